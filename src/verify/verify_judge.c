@@ -19,7 +19,8 @@ static void fail(VerifyRow *r, const char *format, ...)
 }
 
 /* |a - b| over |b|; the plain difference if b is zero. */
-static PetscReal relative(PetscReal a, PetscReal b) { return PetscAbsReal(a - b) / (b == 0 ? 1 : PetscAbsReal(b)); }
+static PetscReal size_of(PetscReal b) { return b == 0 ? 1 : PetscAbsReal(b); }
+static PetscReal relative(PetscReal a, PetscReal b) { return PetscAbsReal(a - b) / size_of(b); }
 
 PetscBool verify_has_errors(const StudySpec *study) { return study->has_exact; }
 
@@ -75,7 +76,7 @@ static void judge_agreement(VerifyRow *rows, PetscInt k)
     if (!other) continue;
     const PetscReal difference = relative(r->value, other->value);
     r->difference = PetscIsNanReal(r->difference) ? difference : PetscMax(r->difference, difference);
-    if (!(difference <= agree->tolerance))
+    if (!(difference <= agree->tolerance + agree->absolute / size_of(other->value)))
       fail(r, "%.3g off %s, allowed %.3g", (double)difference, agree->with, (double)agree->tolerance);
   }
 }

@@ -108,9 +108,12 @@ static void write_study(FILE *out, const Verification *v, PetscInt first, PetscI
   fputc('\n', out);
   write_sources(out, v, first, last);
   if (study->has_exact) write_exact(out, study);
-  for (PetscInt i = 0; i < study->n_agree; ++i)
-    fprintf(out, "- `%s` must agree with `%s` to %g (column *apart*).\n", study->agree[i].series, study->agree[i].with,
-            (double)study->agree[i].tolerance);
+  for (PetscInt i = 0; i < study->n_agree; ++i) {
+    const AgreeSpec *a = study->agree + i;
+    fprintf(out, "- `%s` must agree with `%s` to %g", a->series, a->with, (double)a->tolerance);
+    if (a->absolute > 0) fprintf(out, " of it and %g", (double)a->absolute);
+    fputs(" (column *apart*).\n", out);
+  }
   for (PetscInt i = 0; i < study->n_powers; ++i) {
     char text[512];
     verify_power_text(v->rows, first, last, &study->powers[i], text);

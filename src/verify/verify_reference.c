@@ -105,6 +105,8 @@ static const SchemaEntry agree_entries[] = {
   KEY("series", NAME, NULL, "the series compared", REQUIRED, AT(AgreeSpec, series)),
   KEY("with", NAME, NULL, "an earlier series", REQUIRED, AT(AgreeSpec, with)),
   KEY("tolerance", NUMBER, NULL, "relative", REQUIRED, ABOVE(0), AT(AgreeSpec, tolerance)),
+  KEY("absolute", NUMBER, NULL, "added to it, in the unit of the measure", .fallback = "0", AT_LEAST(0),
+      AT(AgreeSpec, absolute)),
   {.key = NULL},
 };
 static const SchemaEntry power_entries[] = {

@@ -59,7 +59,8 @@ typedef struct {
 
 typedef struct {
   char *series, *with;
-  PetscReal tolerance; /* relative */
+  PetscReal tolerance; /* relative, */
+  PetscReal absolute;  /* and what is added to it, in the unit of the measure */
 } AgreeSpec;
 
 /* A power law: how value - offset grows with the variable, by least squares of the logarithms. */

@@ -296,14 +296,17 @@ static void judges_every_agreement(void **state)
     PetscBool pass;
     PetscReal difference;
   } table[] = {
-    {1, 1, 1, {{name_c, name_a, 0.01}, {name_c, name_b, 0.01}}, PETSC_TRUE, 0},
-    {1, 1.1, 1, {{name_c, name_a, 0.01}, {name_c, name_b, 0.01}}, PETSC_FALSE, 0.1 / 1.1},
-    {1.1, 1, 1, {{name_c, name_a, 0.01}, {name_c, name_b, 0.01}}, PETSC_FALSE, 0.1 / 1.1},
-    {1, 1.1, 1, {{name_c, name_a, 0.01}, {name_c, name_b, 0.2}}, PETSC_TRUE, 0.1 / 1.1},
-    {1, 1.1, 1, {{name_b, name_a, 0.01}, {name_c, name_a, 0.01}}, PETSC_TRUE, 0},
-    {1, 1.1, 1, {{name_b, name_a, 0.01}, {name_c, name_a, 0.01}, {name_c, name_b, 0.05}}, PETSC_FALSE, 0.1 / 1.1},
-    {-2, 3, 2, {{name_c, name_a, 1.9}}, PETSC_FALSE, 2},
-    {0, 3, 1e-3, {{name_c, name_a, 1e-2}}, PETSC_TRUE, 1e-3}, /* nothing to be relative to */
+    {1, 1, 1, {{name_c, name_a, 0.01, 0}, {name_c, name_b, 0.01, 0}}, PETSC_TRUE, 0},
+    {1, 1.1, 1, {{name_c, name_a, 0.01, 0}, {name_c, name_b, 0.01, 0}}, PETSC_FALSE, 0.1 / 1.1},
+    {1.1, 1, 1, {{name_c, name_a, 0.01, 0}, {name_c, name_b, 0.01, 0}}, PETSC_FALSE, 0.1 / 1.1},
+    {1, 1.1, 1, {{name_c, name_a, 0.01, 0}, {name_c, name_b, 0.2, 0}}, PETSC_TRUE, 0.1 / 1.1},
+    {1, 1.1, 1, {{name_b, name_a, 0.01, 0}, {name_c, name_a, 0.01, 0}}, PETSC_TRUE, 0},
+    {1, 1.1, 1, {{name_b, name_a, 0.01, 0}, {name_c, name_a, 0.01, 0}, {name_c, name_b, 0.05, 0}}, PETSC_FALSE, 0.1 / 1.1},
+    {-2, 3, 2, {{name_c, name_a, 1.9, 0}}, PETSC_FALSE, 2},
+    {0, 3, 1e-3, {{name_c, name_a, 1e-2, 0}}, PETSC_TRUE, 1e-3}, /* nothing to be relative to */
+    {5, 3, 5.2, {{name_c, name_a, 1e-2, 0.16}}, PETSC_TRUE, 0.04},
+    {5, 3, 5.2, {{name_c, name_a, 1e-2, 0.14}}, PETSC_FALSE, 0.04},
+    {0, 3, 0.15, {{name_c, name_a, 1e-2, 0.16}}, PETSC_TRUE, 0.15},
   };
   (void)state;
   for (size_t k = 0; k < sizeof table / sizeof *table; ++k) {
