@@ -301,7 +301,12 @@ static void judges_every_agreement(void **state)
     {1.1, 1, 1, {{name_c, name_a, 0.01, 0}, {name_c, name_b, 0.01, 0}}, PETSC_FALSE, 0.1 / 1.1},
     {1, 1.1, 1, {{name_c, name_a, 0.01, 0}, {name_c, name_b, 0.2, 0}}, PETSC_TRUE, 0.1 / 1.1},
     {1, 1.1, 1, {{name_b, name_a, 0.01, 0}, {name_c, name_a, 0.01, 0}}, PETSC_TRUE, 0},
-    {1, 1.1, 1, {{name_b, name_a, 0.01, 0}, {name_c, name_a, 0.01, 0}, {name_c, name_b, 0.05, 0}}, PETSC_FALSE, 0.1 / 1.1},
+    {1,
+     1.1,
+     1,
+     {{name_b, name_a, 0.01, 0}, {name_c, name_a, 0.01, 0}, {name_c, name_b, 0.05, 0}},
+     PETSC_FALSE,
+     0.1 / 1.1},
     {-2, 3, 2, {{name_c, name_a, 1.9, 0}}, PETSC_FALSE, 2},
     {0, 3, 1e-3, {{name_c, name_a, 1e-2, 0}}, PETSC_TRUE, 1e-3}, /* nothing to be relative to */
     {5, 3, 5.2, {{name_c, name_a, 1e-2, 0.16}}, PETSC_TRUE, 0.04},
