@@ -147,6 +147,21 @@ static void tell_bad_member(SweepRun *s, const Member *m)
   sweep_key_error(key, s->sweeps->document, s->diag, "the member %s cannot be run", m->name);
 }
 
+static PetscBool is_taken(const Members *members, const char *name)
+{
+  for (PetscInt i = 0; i < members->n; ++i)
+    if (!strcmp(members->member[i].name, name)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Values that differ in nothing that a directory's name may have get a number. */
+static void number_member(const Members *members, char name[256])
+{
+  char first[256];
+  (void)snprintf(first, sizeof first, "%s", name);
+  for (int k = 2; is_taken(members, name); ++k) (void)snprintf(name, 256, "%.240s-%d", first, k);
+}
+
 PetscErrorCode SweepPlan(SweepRun *s)
 {
   char name[256];
@@ -159,6 +174,7 @@ PetscErrorCode SweepPlan(SweepRun *s)
   if (!diag_errors(s->diag)) PetscCall(TakenOf(s));
   for (PetscInt i = 0; !diag_errors(s->diag) && i < n; ++i) {
     name_member(s->sweep, i, name);
+    number_member(&s->members, name);
     PetscCall(MembersAdd(&s->members, s->out, name, s->file, s->n_taken, s->taken, &m));
     PetscCall(Settings(s, i, &m->set));
     PetscCall(MemberPlan(&s->members, m, s->diag));

@@ -37,6 +37,8 @@ expect "pairs" 0 "$talus" sweep case.yaml --over grid.size=0.5,0.25 --along mate
 [ "$(wc -l <pairs/sweep.csv)" -eq 3 ] || fail "$name: not two members"
 expect "words" 0 "$talus" sweep case.yaml --over method=mpm,fem --out words
 says out.txt "no picture: the values of method are no numbers"
+expect "words of one directory" 0 "$talus" sweep case.yaml --over 'title=a b,a_b,a/b' --measure tip --out alike
+[ -s 'alike/title=a_b/history.csv' ] && [ -s 'alike/title=a_b-2/history.csv' ] && [ "$(grep -c ',done,' alike/sweep.csv)" -eq 3 ] || fail "$name: not three runs"
 expect "one gives up" 1 "$talus" sweep case.yaml --over loads.gravity=[0,-9.81],[0,-98100] --measure tip --out up
 says out.txt "gave up: the run gave up: "
 says err.txt "1 of 2 members did not come to their end"
