@@ -137,6 +137,20 @@ static PetscBool make_film(char *gif, char *film, FILE *nothing, Diag *diag)
   return run_program(arguments, nothing, diag);
 }
 
+static void tell_unwritable(const char *path, int error, Diag *diag)
+{
+  diag_error(diag, NULL, "cannot write the picture '%s': %s", path, strerror(error));
+}
+
+/* Gnuplot says of no file which it could not open, nor why. */
+static PetscBool can_write(const char *unfinished, const char *path, Diag *diag)
+{
+  FILE *file = fopen(unfinished, "wb");
+  if (!file) tell_unwritable(path, errno, diag);
+  else fclose(file);
+  return (PetscBool)(file != NULL);
+}
+
 PetscErrorCode GnuplotEnd(GnuplotScript *script, const char *path, Diag *diag, PetscBool *done)
 {
   char *const arguments[] = {(char[]){"gnuplot"}, (char[]){"-d"}, (char[]){"-"}, NULL};
@@ -149,14 +163,14 @@ PetscErrorCode GnuplotEnd(GnuplotScript *script, const char *path, Diag *diag, P
   *done = !fflush(script->out) && !ferror(script->out);
   if (!*done) diag_error(diag, NULL, "no room for temporary files: %s", strerror(errno));
   rewind(script->out);
-  *done = *done && run_program(arguments, script->out, diag);
+  *done = *done && can_write(unfinished, path, diag) && run_program(arguments, script->out, diag);
   if (*done && format && !strcmp(format->ending, ".mp4")) {
     (void)unlink(film);
     *done = make_film(unfinished, film, script->out, diag);
     (void)file_commit(film, unfinished, *done ? 0 : ECANCELED);
   }
   const int error = file_commit(unfinished, path, *done ? 0 : ECANCELED);
-  if (*done && error) diag_error(diag, NULL, "cannot write the picture '%s': %s", path, strerror(error));
+  if (*done && error) tell_unwritable(path, error, diag);
   *done = *done && !error;
   fclose(script->out);
   PetscFunctionReturn(0);

@@ -561,7 +561,7 @@ static void test_mistakes(void **state)
   Refused(&options, "has no component 'w'");
   options.component = NULL;
   options.out = "/proc/no/such.png";
-  Refused(&options, "gnuplot could not draw");
+  Refused(&options, "cannot write the picture '/proc/no/such.png': No such file");
   snprintf(damaged, sizeof damaged, "%s/pipe", folder);
   assert_int_equal(mkfifo(damaged, 0600), 0);
   options.out = damaged; /* root's /dev/full became a picture */
