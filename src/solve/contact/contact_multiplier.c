@@ -5,15 +5,16 @@
  * about this factor with every change of the multipliers. With 100 the sides of the law hand Newton's
  * iteration back and forth (docs/decisions.md, 106). */
 #define STIFFER 5
-/* The same along the wall where grains flow, and points come to stick or begin to slide in every step: what is wrongly
- * held there throws the iteration back by as much as it is held (docs/theory.md, section 71). */
+/* The same along the wall where grains rub and flow, and points come to stick or begin to slide in every step: what is
+ * wrongly held there throws the iteration back by as much as it is held (docs/theory.md, section 71). */
 #define ALONG_FLOWS 2
 
 #define CLOSED 1e-5 /* of a cell: gaps and slips that remain of contact */
 /* Where grains flow, that share of what the surface moves in the step, up to so much of a cell. */
 #define MOVED 3e-3
 #define FLOWING 5e-4
-#define SLIPS 5    /* slips that stay there, over such gaps */
+#define SLIPS \
+  0.2 /* slips of friction that stay there, over such gaps: more let a column go 1 % too far along its floor */
 #define RESTS 1e-3 /* of a cell: what moves by no more along its wall in a step may be at rest */
 #define MOST_CHANGES 40
 /* Where more points touch than nodes can follow, gaps of some stay, and their multipliers would grow
@@ -85,7 +86,7 @@ void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, C
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     const PetscReal cell = c->section * stiffness_of(c, s->length, inertia);
     c->law.penalty = STIFFER * cell;
-    c->law.along = (share.flows ? ALONG_FLOWS : STIFFER) * cell;
+    c->law.along = (share.flows && c->law.kind == CONTACT_FRICTION ? ALONG_FLOWS : STIFFER) * cell;
     c->stiffest = stiffest_of(s, c);
     c->left = 0;
     c->spread = spread_of(s, c);
