@@ -62,9 +62,10 @@ static void changes_of_prescribed(MassSolve *c)
   for (PetscInt i = 0; i < c->size; ++i) c->x[i] -= c->product[i];
   mass_turn(c, c->x);
   for (PetscInt node = 0; node < c->s->grid->n_nodes; ++node)
-    for (PetscInt d = 0; d < c->dim; ++d)
-      for (PetscInt f = 0; f < MOTIONS; ++f)
-        *(fixed[node * c->dim + d] ? c->inverse + mass_at(c, node, f, d) : c->x + mass_at(c, node, f, d)) = 0;
+    for (PetscInt d = 0; d < c->dim; ++d) {
+      PetscReal *gone = fixed[node * c->dim + d] ? c->inverse : c->x;
+      gone[mass_at(c, node, VELOCITY, d)] = gone[mass_at(c, node, ACCELERATION, d)] = 0;
+    }
 }
 
 /* Has prescribed motion changed any node, on any rank? In flight it has not. */

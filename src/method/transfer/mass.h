@@ -43,9 +43,9 @@ PetscErrorCode MassSolveAllocate(const Discretisation *space, MassMultiply multi
 /* Collective. x and lack are 0. */
 PetscErrorCode MassSolveCreate(const Discretisation *space, MassSolve *solve);
 PetscErrorCode MassSolveDestroy(MassSolve *solve);
-/* What the sweeps go over is found, if it is not known. */
+/* Find what the sweeps go over, unless it is known. */
 PetscErrorCode MassSolveReach(MassSolve *solve);
-/* x is 0 there. */
+/* x = 0 at the nodes that are reached. */
 void mass_clear(const MassSolve *solve, PetscReal *x);
 /* Collective. lack -= M x; x is right on all copies. */
 PetscErrorCode MassSubtract(MassSolve *solve);

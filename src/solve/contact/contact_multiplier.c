@@ -184,8 +184,8 @@ static PetscReal stalled_of(const ContactPoint *c, PetscInt change, PetscReal le
 PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt change, PetscBool *again)
 {
   Contact *s = data;
-  PetscReal worst[5] = {0},
-            of_all[5]; /* left, of all, of what may be stiffened; motion; stalled_of; slips of friction */
+  /* of gaps, and of slips of what does not rub; of what may be stiffened; motion; stalled_of; slips of what rubs */
+  PetscReal worst[5] = {0}, of_all[5];
 
   PetscFunctionBeginUser;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {

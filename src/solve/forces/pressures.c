@@ -164,16 +164,12 @@ static void add_tangent(const Pressures *s, const Pushed *c, const PetscReal f[3
   const PetscInt dim = s->loads->dim;
   for (PetscInt J = 0; J < c->n; ++J) {
     const PetscReal *dN = s->dN + 3 * (c->first + J);
-    PetscReal g[3], ring[3] = {s->hoop ? s->M[c->first + J] / radius : 0, 0, 0};
+    PetscReal g[3], K[9], ring[3] = {s->hoop ? s->M[c->first + J] / radius : 0, 0, 0};
     for (int i = 0; i < 3; ++i) g[i] = inverse[i] * dN[0] + inverse[3 + i] * dN[1] + inverse[6 + i] * dN[2];
-    for (PetscInt I = 0; I < c->n; ++I) {
-      const PetscInt slot = s->slot[c->slot + I * c->n + J], row = s->node[c->first + I] * dim,
-                     column = s->node[c->first + J] * dim;
-      for (PetscInt i = 0; i < dim; ++i)
-        for (PetscInt j = 0; j < dim; ++j)
-          nodal_add_tangent(out, dim, slot, row + i, column + j,
-                            -s->N[c->first + I] * (f[i] * (g[j] + ring[j]) - g[i] * f[j]));
-    }
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) K[3 * i + j] = f[i] * (g[j] + ring[j]) - g[i] * f[j];
+    for (PetscInt I = 0; I < c->n; ++I)
+      nodal_add_tangents(out, dim, s->slot[c->slot + I * c->n + J], -s->N[c->first + I], K);
   }
 }
 
