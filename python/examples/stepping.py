@@ -12,7 +12,7 @@ block = talus.Case({
     "title": "A block comes to rest",
     "kinematics": "plane-strain",
     "method": "mpm",
-    "analysis": {"type": "dynamic", "end": 10, "step": 2e-3},
+    "analysis": {"type": "dynamic", "end": 10, "step": 2e-3, "transfer": "thesis"},
     "grid": {"box": {"min": [0, 0], "max": [1, 2.5]}, "size": 0.25, "cell": "quadrilateral"},
     "bodies": [{"name": "block", "shape": {"box": {"min": [0, 0], "max": [1, HEIGHT]}}, "points_per_cell": 4,
                 "material": "soft"}],

@@ -200,6 +200,15 @@ PetscErrorCode CaseDestroy(Case **c)
 
 PetscBool case_is_mixed(const Case *c) { return c->formulation && !strcmp(c->formulation, "mixed"); }
 
+PetscBool case_has_contact(const Case *c, ContactKind kind)
+{
+  for (PetscInt k = 0; k < c->n_walls; ++k)
+    if (c->walls[k].contact == kind) return PETSC_TRUE;
+  for (PetscInt k = 0; k < c->n_interfaces; ++k)
+    if (c->interfaces[k].contact == kind) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 PetscBool case_dilates(const Case *c)
 {
   for (PetscInt m = 0; m < c->n_materials; ++m)
@@ -207,6 +216,12 @@ PetscBool case_dilates(const Case *c)
       if (strstr(c->materials[m].parameters[k].name, "dilatancy") && c->materials[m].parameters[k].value > 0)
         return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+PetscBool analysis_tunes_newmark(const AnalysisSpec *a)
+{
+  const PetscReal beta = 0.25 * (1 - a->bossak) * (1 - a->bossak), gamma = 0.5 - a->bossak;
+  return (PetscBool)(PetscAbsReal(a->beta - beta) > 1e-12 || PetscAbsReal(a->gamma - gamma) > 1e-12);
 }
 
 PetscBool case_is_static(const AnalysisSpec *analysis)

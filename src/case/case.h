@@ -476,12 +476,13 @@ typedef struct Case {
   PetscInt n_columns;       /* of a case with stages: measures of all of them, each name once */
   const MeasureSpec **columns;
   /* of a stage: */
-  PetscInt stage;        /* its number, 0 for the first; 0 of a case without stages */
-  const StageSpec *spec; /* NULL: the case is no stage */
-  PetscBool seeks;       /* does any stage seek a factor of safety or a limit load? */
-  PetscBool staged;      /* has it stages, or is it one? */
-  PetscReal start;       /* when it began, s */
-  PetscReal release;     /* s over which what is out of balance at the start fades; 0: at once */
+  PetscInt stage;           /* its number, 0 for the first; 0 of a case without stages */
+  const StageSpec *spec;    /* NULL: the case is no stage */
+  PetscBool seeks;          /* does any stage seek a factor of safety or a limit load? */
+  PetscBool staged;         /* has it stages, or is it one? */
+  const char *transfer_why; /* words that go on behind a transfer that it did not name; else NULL */
+  PetscReal start;          /* when it began, s */
+  PetscReal release;        /* s over which what is out of balance at the start fades; 0: at once */
 } Case;
 
 /* The case of stage k; of a case without stages the case itself. */
@@ -507,9 +508,13 @@ const char *case_load_path(const Case *c, PetscInt k, char path[64]);
 PetscBool case_load_follows(const Case *c);
 /* Is the pressure an unknown beside the displacements? */
 PetscBool case_is_mixed(const Case *c);
+/* Of a wall or an interface. */
+PetscBool case_has_contact(const Case *c, ContactKind kind);
 PetscBool case_dilates(const Case *c); /* has any material a dilatancy angle? */
 /* Equilibrium at every step, no inertia: a factor of safety is found so, too. Else there is inertia. */
 PetscBool case_is_static(const AnalysisSpec *analysis);
+/* Are beta and gamma others than those that `bossak` asks for? */
+PetscBool analysis_tunes_newmark(const AnalysisSpec *analysis);
 /* Explicit dynamics: share of the critical step that is taken. musl bears all of it, usl two thirds (docs/theory.md,
  * "Explicit dynamics"). */
 PetscReal case_courant(const AnalysisSpec *analysis);

@@ -40,15 +40,38 @@ void default_stabilisation(const YamlNode *given, Case *c)
   if (!yaml_find(given, "follow")) c->stabilisation.follow = c->spec ? 0.02 : !stands ? 0 : yields ? 0.1 : 0.02;
 }
 
-/* Explicit steps lose half of an elastic disk's spin in a revolution without the gradients that points carry, and
- * what flows goes too far with them (docs/theory.md, "Gradients that points carry"). */
-PetscErrorCode DefaultTransfer(Case *c)
+/* Why points keep their gradients, or do not. What only swings, turns and bounces keeps its energy by them
+ * (docs/experiments/basis.md, "Defaults once more"), and in explicit steps its spin; what flows gains nothing, and
+ * explicitly goes too far. What slides with friction and nothing that damps it squeals, and then slides too easily. */
+static const char *reason(const Case *c, PetscBool *slopes)
 {
   const AnalysisSpec *a = &c->analysis;
-  const PetscBool turns = a->type == ANALYSIS_EXPLICIT && a->update == EXPLICIT_MUSL && !anything_yields(c);
+  const Method *method = c->method ? method_find(c->method) : NULL;
+  *slopes = PETSC_FALSE;
+  if (case_is_static(a) || a->keep_velocity || !method || !method->restores_grid) return "";
+  if (anything_yields(c)) return ", the default where a law yields";
+  if (a->type == ANALYSIS_DYNAMIC && case_has_contact(c, CONTACT_FRICTION)) return ", the default with friction";
+  if (a->type == ANALYSIS_DYNAMIC && !method_transfers(c, transfer_find("consistent"), basis_find(c->basis.kind)))
+    return "; consistent, which keeps more energy, goes with scheme midpoint";
+  *slopes = (PetscBool)(a->type == ANALYSIS_DYNAMIC || a->update == EXPLICIT_MUSL);
+  return *slopes ? ", the default where no law yields and nothing rubs" : "";
+}
+
+const char *default_transfer(const Case *c)
+{
+  PetscBool slopes;
+  reason(c, &slopes);
+  return slopes ? "consistent" : transfers[0]->name;
+}
+
+PetscErrorCode DefaultTransfer(Case *c)
+{
+  PetscBool slopes;
 
   PetscFunctionBeginUser;
-  if (!a->transfer) PetscCall(PetscStrallocpy(turns ? "consistent" : "thesis", &c->analysis.transfer));
+  if (c->analysis.transfer) PetscFunctionReturn(0);
+  c->transfer_why = reason(c, &slopes);
+  PetscCall(PetscStrallocpy(default_transfer(c), &c->analysis.transfer));
   PetscFunctionReturn(0);
 }
 
@@ -56,8 +79,10 @@ PetscErrorCode DefaultTransfer(Case *c)
  * midpoint rule"). */
 PetscErrorCode DefaultScheme(Case *c)
 {
+  const AnalysisSpec *a = &c->analysis;
+
   PetscFunctionBeginUser;
-  if (keeps_all(c) && !c->analysis.scheme && c->analysis.bossak == 0)
+  if (keeps_all(c) && !a->scheme && a->bossak == 0 && !analysis_tunes_newmark(a))
     PetscCall(PetscStrallocpy("midpoint", &c->analysis.scheme));
   PetscFunctionReturn(0);
 }

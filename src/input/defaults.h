@@ -5,6 +5,7 @@
 
 /* Of what `given`, the mapping of that name or NULL, has no key for. */
 void default_stabilisation(const YamlNode *given, Case *c);
+const char *default_transfer(const Case *c);
 /* Where the case names none. */
 PetscErrorCode DefaultTransfer(Case *c);
 PetscErrorCode DefaultScheme(Case *c);

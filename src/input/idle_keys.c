@@ -165,7 +165,7 @@ static Case usual_of(const Case *c)
   Case usual = *c;
   AnalysisSpec *a = &usual.analysis;
   a->scheme = NULL;
-  a->transfer = (char *)transfers[0]->name;
+  a->transfer = (char *)default_transfer(&usual);
   a->beta = 0.25 * (1 - a->bossak) * (1 - a->bossak);
   a->gamma = 0.5 - a->bossak;
   a->smallest = a->step / 1024;

@@ -46,7 +46,11 @@ extern const Method *const methods[]; /* ended by NULL */
 const Method *method_find(const char *name);
 /* Do its nodes and points fit the basis? */
 PetscBool method_takes(const Method *method, const Basis *basis);
+/* May implicit steps of the case have both? */
+PetscBool method_transfers(const Case *c, const struct Transfer *transfer, const Basis *basis);
 /* The basis of a case that names none. */
 const char *method_basis(const Method *method, const Case *c);
 /* Which basis the case has, and why if it did not name it: a line for people. */
 void method_tell_basis(const Method *method, const Case *c, size_t size, char *text);
+/* The same of the transfer, with the scheme that goes with it. */
+void method_tell_transfer(const Case *c, size_t size, char *text);

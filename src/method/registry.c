@@ -26,20 +26,20 @@ PetscBool method_takes(const Method *method, const Basis *basis)
   return basis->nodes == BASIS_OF_CELLS || (basis->nodes == BASIS_OF_GRID && method->restores_grid);
 }
 
-/* What points carry of their gradients is out of balance on the next grid, unless forces balance in
- * the middle of a step; that is what such a case then takes, if it may (docs/theory.md 16). */
+/* Must forces balance at the end of a step? Pressures do, and schemes that the case chose by their names or numbers. */
 static PetscBool lacks_middle(const Case *c)
 {
-  const TimeScheme *scheme = time_scheme_of(&c->analysis);
-  if (case_is_static(&c->analysis)) return PETSC_FALSE;
-  return case_is_mixed(c) || c->analysis.bossak != 0 || (c->analysis.scheme && scheme && !scheme->middle);
+  const AnalysisSpec *a = &c->analysis;
+  const TimeScheme *scheme = time_scheme_of(a);
+  if (case_is_static(a)) return PETSC_FALSE;
+  return case_is_mixed(c) || a->bossak != 0 || analysis_tunes_newmark(a) || (a->scheme && scheme && !scheme->middle);
 }
 
-/* Functions of 27 nodes a point take 1.4 to 2 times as long as linear ones where two levels of the box solve for
- * them (docs/theory.md 61), 2 to 5 times elsewhere. Stages may be of both kinds, and have one basis. */
-static PetscBool is_dear_in_space(const Case *c)
+/* What points carry of their gradients is out of balance on the next grid, unless forces balance in
+ * the middle of a step; that is what such a case then takes, if it may (docs/theory.md 16). */
+PetscBool method_transfers(const Case *c, const Transfer *transfer, const Basis *basis)
 {
-  return !case_is_static(&c->analysis) || case_is_mixed(c) || c->staged ? PETSC_TRUE : PETSC_FALSE;
+  return (PetscBool)(!transfer || !basis || !transfer->slopes || !basis->domains || !lacks_middle(c));
 }
 
 /* What keeps the case from having the basis by default, in words that go on behind its name; NULL: nothing. */
@@ -49,11 +49,11 @@ static const char *misfit(const Case *c, const Basis *basis)
   const Transfer *transfer = transfer_find(c->analysis.transfer);
   if (formulation && formulation->cells && basis->nodes != BASIS_OF_CELLS)
     return "has no cells whose points could share their volume";
-  if (transfer && transfer->slopes && basis->domains && lacks_middle(c))
+  if (!method_transfers(c, transfer, basis))
     return "takes another transfer, or displacements alone and scheme midpoint";
-  const char *grid = basis->misfit ? basis->misfit(&c->grid) : NULL;
-  if (grid || !basis->domains || !c->kinematics || kinematics_dim(c->kinematics) < 3) return grid;
-  return is_dear_in_space(c) ? "takes 2 to 5 times as long in space" : NULL;
+  if (basis->domains && case_is_mixed(c) && c->kinematics && kinematics_dim(c->kinematics) == 3)
+    return "takes 4 times as long with pressures in space";
+  return basis->misfit ? basis->misfit(&c->grid) : NULL;
 }
 
 const char *method_basis(const Method *method, const Case *c)
@@ -73,4 +73,10 @@ void method_tell_basis(const Method *method, const Case *c, size_t size, char *t
   else
     snprintf(text, size, "%s, the default of %s%s%s%s", kind, method->name, last ? "; basis: {" : "", last ? last : "",
              last ? ": {}} is the thesis's" : "");
+}
+
+void method_tell_transfer(const Case *c, size_t size, char *text)
+{
+  const AnalysisSpec *a = &c->analysis;
+  snprintf(text, size, "%s%s; scheme %s", a->transfer, c->transfer_why ? c->transfer_why : "", time_scheme_of(a)->name);
 }

@@ -199,7 +199,7 @@ expect "the name of the problem is there" 2 "$talus" import kratos falling/fall.
 says err.txt "the folder 'bar' cannot be made" "MP_SPIN is not compared: talus has no measure for it"
 says bar/case.yaml "neo-hookean"
 expect "a bar that falls" 0 "$talus" import kratos falling/fall.json --out fall
-says fall/case.yaml "type: dynamic, end: 0.05, step: 0.01, mass: lumped}" "law: mohr-coulomb" "friction_angle: 30" "gravity: [0, -10]"
+says fall/case.yaml "type: dynamic, end: 0.05, step: 0.01, mass: lumped, transfer: thesis}" "law: mohr-coulomb" "friction_angle: 30" "gravity: [0, -10]"
 expect "it falls" 0 "$talus" run fall/case.yaml
 says out.txt "4 of 4 within what is allowed"
 
@@ -216,7 +216,7 @@ lacks err.txt "jumps"
 # Kratos's default in dynamics is Bossak's scheme.
 sed 's/"scheme_type": "newmark"/"echo_level": 0/' falling/fall.json >falling/bossak.json
 expect "Bossak" 0 "$talus" import kratos falling/bossak.json --out bossak
-says bossak/case.yaml "bossak: -0.3, mass: lumped}"
+says bossak/case.yaml "bossak: -0.3, mass: lumped, transfer: thesis}"
 sed -i 's/"echo_level": 0,$/"echo_level": 0, "consistent_mass_matrix": true,/' falling/bossak.json
 expect "consistent mass" 0 "$talus" import kratos falling/bossak.json --out mass
 lacks mass/case.yaml "mass: lumped"

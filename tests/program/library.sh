@@ -85,7 +85,7 @@ block() {
 title: Elastic block falls and bounces
 kinematics: plane-strain
 method: mpm
-analysis: {type: dynamic, step: 2e-3, end: 0.4}
+analysis: {type: dynamic, step: 2e-3, end: 0.4, transfer: thesis}
 grid: {box: {min: [0, 0], max: [3, 2]}, size: 0.05}
 bodies:
   - {name: block, shape: {box: {min: [0.5, 0.5], max: [1.5, 1]}}, points_per_cell: 4, material: rubber,

@@ -40,7 +40,7 @@ awk -F, 'END {exit !($3 > 0.039 && $3 < 0.041)}' own1/history.csv || fail "the t
 cat >fly.yaml <<'END'
 kinematics: plane-strain
 method: mpm
-analysis: {type: dynamic, step: 4e-3, end: 0.2}
+analysis: {type: dynamic, step: 4e-3, end: 0.2, transfer: thesis}
 grid: {box: {min: [0, 0], max: [4, 1]}, size: 0.125, outside: remove}
 bodies:
   - {name: here, shape: {box: {min: [0.25, 0.25], max: [0.75, 0.75]}}, points_per_cell: 4, material: rubber, velocity: [5, 0.1]}

@@ -32,14 +32,14 @@ awk -F, 'NR > 1 && $3 > 1.9 { flew = 1 } NR > 1 && $10 > 1e4 { hit = 1 } END { e
   fail "the block did not fly and bounce"
 
 # The functions of a case that names none reach farther than its cells, over to other ranks; where Newton stops is not told apart from that
-block | sed 's/^basis:.*/newton: {residual: 1e-12}/' >case.yaml
+block | sed 's/^basis:.*/newton: {residual: 1e-12}/; s/, transfer: thesis//' >case.yaml
 same "bouncing block, default basis"
-says run3/log.txt "basis = gimp, the default of mpm"
+says run3/log.txt "basis = gimp, the default of mpm" "transfer = consistent, the default"
 
 cat >case.yaml <<'END'
 kinematics: 3d
 method: mpm
-analysis: {type: dynamic, step: 5e-3, end: 0.1}
+analysis: {type: dynamic, step: 5e-3, end: 0.1, transfer: thesis}
 grid: {box: {min: [0, 0, 0], max: [1.6, 0.8, 0.8]}, size: 0.1}
 bodies:
   - {name: ball, shape: {sphere: {centre: [0.5, 0.4, 0.3], radius: 0.22}}, points_per_cell: 8, material: rubber,

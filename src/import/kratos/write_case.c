@@ -28,6 +28,7 @@ static void write_analysis(const KratosProject *p, FILE *out)
       schema_write_real(out, p->beta);
     }
     if (!p->consistent) fputs(", mass: lumped", out); /* Kratos's default, in 2019 all that it had */
+    fputs(", transfer: thesis", out);                 /* as Kratos does */
   } else fprintf(out, ", steps: %" PetscInt_FMT, p->n_steps);
   if (p->dynamic || kratos_is_held(p)) {
     fputs("}\n", out);

@@ -3,15 +3,9 @@
 
 #define SUM_NUMBERS ((PetscInt)(sizeof(ContactSum) / sizeof(PetscReal)))
 
-static PetscBool rubs(ContactKind kind) { return kind == CONTACT_FRICTION || kind == CONTACT_STICK; }
-
 PetscBool contact_rubs(const Case *c)
 {
-  for (PetscInt k = 0; k < c->n_walls; ++k)
-    if (rubs(c->walls[k].contact)) return PETSC_TRUE;
-  for (PetscInt k = 0; k < c->n_interfaces; ++k)
-    if (rubs(c->interfaces[k].contact)) return PETSC_TRUE;
-  return PETSC_FALSE;
+  return (PetscBool)(case_has_contact(c, CONTACT_FRICTION) || case_has_contact(c, CONTACT_STICK));
 }
 
 static ContactMotion motion_of(const Model *m, const ContactMass *whole, PetscReal *motion, PetscReal *given,
@@ -192,7 +186,9 @@ static ContactWork point_work(const Model *m, const ContactPoint *c)
     work.sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
   }
   work.closing += pressure * closing;
-  if (!rubs(c->law.kind)) { /* along a wall that does not rub only a force does work that had another normal before */
+  if (c->law.kind != CONTACT_FRICTION &&
+      c->law.kind !=
+        CONTACT_STICK) { /* along a wall that does not rub only a force does work that had another normal before */
     work.closing -= work.sliding;
     work.sliding = 0;
   }

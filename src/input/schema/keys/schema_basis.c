@@ -129,10 +129,11 @@ static PetscBool hide_in_basis(const SchemaEntry *e, const void *source)
 const SchemaTable schema_basis = {
   .name = "basis",
   .help =
-    "Shape functions. Without it mpm has gimp in boxes of quadrilaterals, and of hexahedra in statics without stages "
-    "and not mixed; and cell where that does not go (other grids, formulation mean-dilatation, all else in space; "
-    "transfer consistent with formulation mixed, bossak, or another scheme than midpoint); fem "
-    "has cell, gmm lme. Lengths are counted in cells of the grid that gives the nodes.",
+    "Shape functions. Without it mpm has gimp in boxes of quadrilaterals and hexahedra, and cell where that does not "
+    "go "
+    "(other grids, formulation mean-dilatation, in space formulation mixed; a named transfer consistent with "
+    "formulation mixed, bossak, or another scheme than midpoint); fem has cell, gmm lme. Lengths are counted in cells "
+    "of the grid that gives the nodes.",
   .entries = schema_bases,
   .groups = schema_basis_groups,
   .check = CheckBasis,

@@ -140,7 +140,9 @@ static const SchemaEntry analysis_entries[] = {
       AT(AnalysisSpec, damping)),
   KEY("mass", WORD, NULL, "mass matrix", .words = mass_words, .fallback = "consistent", AT(AnalysisSpec, mass)),
   KEY("transfer", WORD_TEXT, NULL, "mpm: what nodes take of the points' motion, see `talus list transfers`",
-      .registry = (const void *const *)transfers, .note = "thesis; explicit, where no law yields: consistent",
+      .registry = (const void *const *)transfers,
+      .note = "consistent where no law yields and nothing rubs; else thesis, and with basis gimp and bspline where "
+              "scheme midpoint does not go (mixed, bossak, beta, gamma); explicit with friction: consistent",
       AT(AnalysisSpec, transfer)),
   KEY(
     "keep_velocity", BOOLEAN, NULL,
