@@ -13,39 +13,47 @@ static PetscBool anything_yields(const Case *c)
   return PETSC_FALSE;
 }
 
-/* Do points hand over all that they have? */
-static PetscBool keeps_all(const Case *c)
-{
-  const Transfer *transfer = transfer_find(c->analysis.transfer);
-  const Basis *basis = basis_find(c->basis.kind);
-  return c->analysis.type == ANALYSIS_DYNAMIC && transfer && transfer->slopes && basis && basis->domains;
-}
-
-/* Do they, on cells that they may leave all but empty? */
+/* Do points hand over more than a mean, */
 static PetscBool keeps_slopes(const Case *c)
 {
   const Transfer *transfer = transfer_find(c->analysis.transfer);
   return c->analysis.type == ANALYSIS_DYNAMIC && transfer && transfer->slopes;
 }
 
+/* and all that they have? */
+static PetscBool keeps_all(const Case *c)
+{
+  const Basis *basis = basis_find(c->basis.kind);
+  return keeps_slopes(c) && basis && basis->domains;
+}
+
 /* Statics in which nodes follow others, and no stage comes before or after. */
 static PetscBool stands_alone(const Case *c) { return case_is_static(&c->analysis) && !c->spec && !case_is_mixed(c); }
 
+/* Nodes that follow others make a matrix without lumped mass well conditioned, and take less energy than what holds them
+ * to linear motion; with lumped mass they cost what swings a fifth more iterations. What has come to rest in a stage
+ * before must find the same nodes. Where statics yields those follow, too, that are reached a little more (section 62). */
+static PetscReal share_that_follows(const Case *c)
+{
+  const PetscBool yields = anything_yields(c);
+  if (c->spec) return 0.02;
+  if (stands_alone(c)) return yields ? 0.1 : 0.02;
+  return keeps_all(c) && !yields ? 0.3 : 0;
+}
+
 /* Measured (docs/theory.md, section 9): elastic bodies keep angular momentum and energy best
- * with a tenth of the mass lumped and no tie, but points that carry gradients come off
- * corners then, and keep as much with three tenths ("Defaults once more" in docs/experiments/basis.md), while at the front of a flow, where yielded points
- * carry next to nothing, only both keep Newton's method alive. Where points have domains,
- * curvature is held instead, and without lumped mass the transfer loses no angular momentum at
- * all (section 16). Where nodes follow others Newton's method takes up to a fifth more iterations
- * for what swings; but what has come to rest in a stage before must find the same nodes. Where statics
- * yields those follow, too, that are reached a little more (section 62). */
+ * with a tenth of the mass lumped and no tie, but points that carry gradients come off corners
+ * then, and keep as much with three tenths (docs/experiments/basis.md, "Defaults once more");
+ * while at the front of a flow, where yielded points carry next to nothing, only both keep
+ * Newton's method alive. Where points have domains, curvature is held instead, and without
+ * lumped mass the transfer loses no angular momentum at all (section 16). */
 void default_stabilisation(const YamlNode *given, Case *c)
 {
   const PetscBool yields = anything_yields(c), exact = keeps_all(c), stands = stands_alone(c);
   if (!yaml_find(given, "mass")) c->stabilisation.mass = yields ? 1 : exact ? 0 : keeps_slopes(c) ? 0.3 : 0.1;
   if (!yaml_find(given, "inertia")) c->stabilisation.inertia = yields ? 0.01 : 0;
   if (!yaml_find(given, "curvature")) c->stabilisation.curvature = exact ? 0.1 : !stands ? 0.01 : yields ? 1e-4 : 1e-3;
-  if (!yaml_find(given, "follow")) c->stabilisation.follow = c->spec ? 0.02 : !stands ? 0 : yields ? 0.1 : 0.02;
+  if (!yaml_find(given, "follow")) c->stabilisation.follow = share_that_follows(c);
 }
 
 /* Why points keep their gradients, or do not. What only swings, turns and bounces keeps its energy by them

@@ -1,4 +1,5 @@
 #include "method/extend/extend.h"
+#include "method/transfer/mass.h"
 #include "method/transfer/transfer.h"
 
 PetscErrorCode DiscretisationCreate(const Discretisation *parts, Discretisation **space)
@@ -39,6 +40,7 @@ PetscErrorCode DiscretisationDestroy(Discretisation **space)
   PetscCall(PetscFree(s->tie));
   PetscCall(PetscFree(s->pressure_tie));
   PetscCall(PetscFree(s->lost));
+  PetscCall(MassRowsDestroy(&s->mass_rows));
   PetscCall(PetscFree(*space));
   PetscFunctionReturn(0);
 }

@@ -32,6 +32,7 @@ typedef struct Discretisation {
   PetscInt group_capacity;
   PetscReal *lumping, *soft, *tie; /* per group, see WeakFormInput */
   PetscReal *pressure_tie;         /* mixed: per group, see WeakFormInput */
+  struct MassRows *mass_rows;      /* of the step's mass matrix, if transfers have summed it up; see transfer/mass.h */
   PetscInt n_lost;                 /* points that left the grid in the last convection, all ranks */
   LostPoint *lost;                 /* at most 16 of them */
   void *own;                       /* what the method alone knows, see Method.destroy */

@@ -2,6 +2,7 @@
 #include "method/extend/extend.h"
 #include "method/method.h"
 #include "method/transfer/loops.h"
+#include "method/transfer/mass.h"
 #include "method/transfer/transfer.h"
 #include "points/split.h"
 
@@ -14,6 +15,7 @@ static PetscErrorCode Project(Discretisation *s)
   const PetscInt dofs = s->grid->n_nodes * s->grid->dim;
 
   PetscFunctionBeginUser;
+  mass_rows_forget(s->mass_rows);
   PetscCall(transfer->gather(s));
   PetscCall(PetscArraycpy(n->v, n->v_points, dofs));
   PetscCall(PetscArraycpy(n->a, n->a_points, dofs));

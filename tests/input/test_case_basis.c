@@ -184,6 +184,9 @@ static void Followers(void **state)
   ASSERT_NEAR(c->stabilisation.curvature, 1e-4, 0);
   assert_int_equal(CaseDestroy(&c), 0);
   c = read_good(MOVING("mpm", ""));
+  ASSERT_NEAR(c->stabilisation.follow, 0.3, 0);
+  assert_int_equal(CaseDestroy(&c), 0);
+  c = read_good(MOVING("mpm", ", transfer: thesis"));
   ASSERT_NEAR(c->stabilisation.follow, 0, 0);
   assert_int_equal(CaseDestroy(&c), 0);
   c = read_good(PLAIN "stages:\n  - {name: stands}\n  - {name: swings, analysis: {type: dynamic, step: 1, end: 2}}\n");

@@ -39,7 +39,7 @@ says run3/log.txt "basis = gimp, the default of mpm" "transfer = consistent, the
 cat >case.yaml <<'END'
 kinematics: 3d
 method: mpm
-analysis: {type: dynamic, step: 5e-3, end: 0.1, transfer: thesis}
+analysis: {type: dynamic, step: 5e-3, end: 0.1}
 grid: {box: {min: [0, 0, 0], max: [1.6, 0.8, 0.8]}, size: 0.1}
 bodies:
   - {name: ball, shape: {sphere: {centre: [0.5, 0.4, 0.3], radius: 0.22}}, points_per_cell: 8, material: rubber,

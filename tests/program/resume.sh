@@ -71,7 +71,7 @@ cut_and_resumed "dynamic fem" 2 --set method=fem --set 'analysis={type: dynamic,
 cat >case.yaml <<'END'
 kinematics: 3d
 method: mpm
-analysis: {type: dynamic, step: 2e-3, end: 0.03, transfer: thesis}
+analysis: {type: dynamic, step: 2e-3, end: 0.03}
 grid: {box: {min: [0, 0, 0], max: [1.6, 0.8, 0.8]}, size: 0.1}
 bodies:
   - {name: box, shape: {box: {min: [0.3, 0.2, 0.1], max: [0.7, 0.6, 0.4]}}, points_per_cell: 8, material: rubber,

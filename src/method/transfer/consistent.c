@@ -35,6 +35,7 @@ static PetscErrorCode ConsistentGather(Discretisation *s)
 
   PetscFunctionBeginUser;
   PetscCall(MassSolveCreate(s, &c));
+  mass_keep(&c, &s->mass_rows);
   if (s->points->components[POINT_SLOPE]) slopes_gather(s, c.lack);
   PetscCall(GridSumToOwners(s->grid, c.width, c.lack));
   PetscCall(TransferSum(s));
@@ -118,6 +119,7 @@ static PetscErrorCode ConsistentHold(Discretisation *s)
     PetscFunctionReturn(0);
   }
   PetscCall(MassSolveCreate(s, &c));
+  mass_keep(&c, &s->mass_rows);
   c.framed = PETSC_TRUE;
   changes_of_prescribed(&c);
   PetscCall(MassSubtract(&c));

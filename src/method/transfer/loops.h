@@ -1,4 +1,4 @@
-/* Loops over the points of each kind of cells. */
+/* Loops over the points of each kind of cells, and over nodes with all of their numbers at once. */
 #pragma once
 #include "method/discretisation.h"
 
@@ -18,3 +18,19 @@
       else loop((s)->grid->dim, run->nodes, run, __VA_ARGS__);                       \
     }                                                                                \
   } while (0)
+
+/* Four numbers of a node, which are one register: velocity and acceleration in the plane; in space it has two of
+ * them, of which the second is half empty. */
+typedef PetscReal Four __attribute__((vector_size(4 * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
+
+UNROLLED Four take(const PetscInt part, const PetscInt width, const PetscReal *x)
+{
+  if (4 * part + 4 <= width) return *(const Four *)(x + 4 * part);
+  return (Four){x[4 * part], x[4 * part + 1], 0, 0};
+}
+
+UNROLLED void give(const PetscInt part, const PetscInt width, Four more, PetscReal *x)
+{
+  if (4 * part + 4 <= width) *(Four *)(x + 4 * part) += more;
+  else x[4 * part] += more[0], x[4 * part + 1] += more[1];
+}

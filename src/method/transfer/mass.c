@@ -8,22 +8,6 @@
 PetscReal mass_lumping(const Discretisation *s, PetscInt g) { return s->lumping ? s->lumping[g] : 0; }
 PetscReal mass_tie(const Discretisation *s, PetscInt g) { return s->tie ? s->tie[g] : 0; }
 
-/* Four numbers of a node, which are one register: velocity and acceleration in the plane; in space it has two of
- * them, of which the second is half empty. */
-typedef PetscReal Four __attribute__((vector_size(4 * sizeof(PetscReal)), aligned(sizeof(PetscReal)), may_alias));
-
-UNROLLED Four take(const PetscInt part, const PetscInt width, const PetscReal *x)
-{
-  if (4 * part + 4 <= width) return *(const Four *)(x + 4 * part);
-  return (Four){x[4 * part], x[4 * part + 1], 0, 0};
-}
-
-UNROLLED void give(const PetscInt part, const PetscInt width, Four more, PetscReal *x)
-{
-  if (4 * part + 4 <= width) *(Four *)(x + 4 * part) += more;
-  else x[4 * part] += more[0], x[4 * part + 1] += more[1];
-}
-
 /* out += N m (1 - l) N x of a point; weight += N m l. */
 UNROLLED void multiply_point(const PetscInt nn, PetscReal m, PetscReal lumped, const PetscReal *N, const Four *in,
                              PetscReal *weight, Four *out)
@@ -60,12 +44,12 @@ UNROLLED void multiply_part(const PetscInt part, const PetscInt width, const Pet
 
 /* sum += M x over the points of a run. */
 UNROLLED void multiply(const PetscInt dim, const PetscInt fixed_nn, const SupportRun *run, const Discretisation *s,
-                       const PetscReal *x, PetscReal *sum)
+                       PetscBool alone, const PetscReal *x, PetscReal *sum)
 {
   for (PetscInt g = run->first; g < run->end; ++g) {
     const PetscInt nn = fixed_nn ? fixed_nn : support_nodes(s->support, g);
     multiply_part(0, 2 * dim, nn, s, g, x, sum);
-    if (dim == 3) multiply_part(1, 2 * dim, nn, s, g, x, sum);
+    if (dim == 3 && !alone) multiply_part(1, 2 * dim, nn, s, g, x, sum);
   }
 }
 
@@ -95,16 +79,25 @@ void mass_turn(const MassSolve *c, PetscReal *x)
       frame_turn(c->dim, frames->w + 3 * k, x + frames->node[k] * c->width + f * c->dim);
 }
 
+/* A matrix that others need, too, is kept. */
+static PetscErrorCode SumUp(MassSolve *c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MassRowsUpdate(c->s, c->kept ? c->kept : &c->rows));
+  if (c->kept) c->rows = *c->kept;
+  PetscFunctionReturn(0);
+}
+
 /* product = M x, on owners. */
 static PetscErrorCode Multiply(MassSolve *c, PetscReal *x)
 {
   PetscFunctionBeginUser;
-  if (++c->products == FEW_PRODUCTS) PetscCall(MassRowsCreate(c->s, &c->rows));
+  if (++c->products == FEW_PRODUCTS && !c->rows) PetscCall(SumUp(c));
   mass_turn(c, x);
   if (c->rows) mass_rows_multiply(c, x);
   else {
     mass_clear(c, c->product);
-    WITH_SIZES(multiply, c->s, c->s, x, c->product);
+    WITH_SIZES(multiply, c->s, c->s, c->alone, x, c->product);
   }
   mass_turn(c, x);
   PetscCall(GridSumToOwners(c->s->grid, c->width, c->product));
@@ -124,6 +117,12 @@ PetscErrorCode MassSolveCreate(const Discretisation *s, MassSolve *c)
   }
   PetscCall(MassSolveReach(c));
   PetscFunctionReturn(0);
+}
+
+void mass_keep(MassSolve *c, MassRows **kept)
+{
+  c->kept = kept;
+  if (*kept && (*kept)->known) c->rows = *kept;
 }
 
 PetscErrorCode MassSubtract(MassSolve *c)

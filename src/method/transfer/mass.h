@@ -12,7 +12,13 @@
 enum { VELOCITY, ACCELERATION, MOTIONS };
 
 typedef struct MassSolve MassSolve;
-typedef struct MassRows MassRows;
+/* M of this rank's points, row by row of local nodes. */
+typedef struct MassRows {
+  PetscBool known; /* or is there only room? */
+  PetscInt nodes, room;
+  PetscInt *start, *column; /* n_nodes + 1; local nodes */
+  PetscReal *entry;         /* kg */
+} MassRows;
 /* Collective. product = M x, on owners; x is right on all copies. */
 typedef PetscErrorCode (*MassMultiply)(MassSolve *solve, PetscReal *x);
 
@@ -29,7 +35,9 @@ struct MassSolve {
   PetscInt n_reached, n_reached_owned, *reached;
   PetscBool framed;  /* are components those in the frames of nodes that slide? */
   PetscInt products; /* how many there were */
+  PetscBool alone;   /* does nobody ask for accelerations in this sweep? */
   MassRows *rows;    /* NULL: not worth it yet */
+  MassRows **kept;   /* where they are kept for others; NULL: the solve's own */
 };
 
 /* Where a nodal array has component d of a motion of a node. */
@@ -60,8 +68,11 @@ PetscErrorCode MassSolveClose(MassSolve *solve);
 /* Share of a group's mass that is lumped, and its tie, kg. */
 PetscReal mass_lumping(const Discretisation *space, PetscInt group);
 PetscReal mass_tie(const Discretisation *space, PetscInt group);
-/* mass_matrix.c. M of this rank's points, row by row. */
-PetscErrorCode MassRowsCreate(const Discretisation *space, MassRows **rows);
+/* The matrix summed up for long solves is kept there for all that solve with it until mass_rows_forget. */
+void mass_keep(MassSolve *solve, MassRows **kept);
+/* mass_matrix.c. Sums the rows up; *rows may be NULL. */
+PetscErrorCode MassRowsUpdate(const Discretisation *space, MassRows **rows);
+void mass_rows_forget(MassRows *rows);
 PetscErrorCode MassRowsDestroy(MassRows **rows);
 /* product = M x at the nodes that are reached, before ranks add theirs up. */
 void mass_rows_multiply(const MassSolve *solve, const PetscReal *x);

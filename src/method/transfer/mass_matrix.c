@@ -5,12 +5,6 @@
 #include "method/transfer/mass.h"
 #include "method/transfer/loops.h"
 
-struct MassRows {
-  PetscInt *start, *column; /* n_nodes + 1; local nodes */
-  PetscReal *entry;         /* kg */
-  PetscInt room;
-};
-
 /* Which groups have a node, and as which of theirs. */
 typedef struct {
   PetscInt *start, *group, *place;
@@ -95,24 +89,39 @@ static PetscErrorCode AddRow(const Discretisation *s, const Sharers *sharers, Pe
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MassRowsCreate(const Discretisation *s, MassRows **created)
+static PetscErrorCode ReserveNodes(MassRows *rows, PetscInt n)
+{
+  PetscFunctionBeginUser;
+  if (n <= rows->nodes && rows->start) PetscFunctionReturn(0);
+  rows->nodes = n;
+  PetscCall(PetscFree(rows->start));
+  PetscCall(PetscMalloc1(n + 1, &rows->start));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MassRowsUpdate(const Discretisation *s, MassRows **rows)
 {
   const PetscInt n = s->grid->n_nodes;
   Sharers sharers;
-  MassRows *rows;
   PetscInt *at;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscNew(&rows));
-  PetscCall(PetscCalloc1(n + 1, &rows->start));
+  if (!*rows) PetscCall(PetscNew(rows));
+  PetscCall(ReserveNodes(*rows, n));
+  (*rows)->start[0] = 0;
   PetscCall(PetscMalloc1(n, &at));
   for (PetscInt node = 0; node < n; ++node) at[node] = -1;
   PetscCall(SharersCreate(s->support, n, &sharers));
-  for (PetscInt node = 0; node < n; ++node) PetscCall(AddRow(s, &sharers, node, at, rows));
+  for (PetscInt node = 0; node < n; ++node) PetscCall(AddRow(s, &sharers, node, at, *rows));
   PetscCall(SharersDestroy(&sharers));
   PetscCall(PetscFree(at));
-  *created = rows;
+  (*rows)->known = PETSC_TRUE;
   PetscFunctionReturn(0);
+}
+
+void mass_rows_forget(MassRows *rows)
+{
+  if (rows) rows->known = PETSC_FALSE;
 }
 
 PetscErrorCode MassRowsDestroy(MassRows **rows)
@@ -126,20 +135,23 @@ PetscErrorCode MassRowsDestroy(MassRows **rows)
   PetscFunctionReturn(0);
 }
 
-UNROLLED void multiply(const PetscInt width, const MassSolve *c, const PetscReal *x)
+/* By registers: the compiler would multiply number by number. */
+UNROLLED void multiply(const PetscInt width, const PetscInt parts, const MassSolve *c, const PetscReal *x)
 {
   const MassRows *rows = c->rows;
   for (PetscInt i = 0; i < c->n_reached; ++i) {
     const PetscInt node = c->reached[i];
-    PetscReal sum[2 * 3] = {0, 0, 0, 0, 0, 0};
+    Four sum[2] = {{0, 0, 0, 0}, {0, 0, 0, 0}};
     for (PetscInt k = rows->start[node]; k < rows->start[node + 1]; ++k)
-      for (PetscInt d = 0; d < width; ++d) sum[d] += rows->entry[k] * x[rows->column[k] * width + d];
-    for (PetscInt d = 0; d < width; ++d) c->product[node * width + d] = sum[d];
+      for (PetscInt part = 0; part < parts; ++part)
+        sum[part] += rows->entry[k] * take(part, width, x + rows->column[k] * width);
+    for (PetscInt d = 0; d < width; ++d) c->product[node * width + d] = sum[d / 4][d % 4];
   }
 }
 
 void mass_rows_multiply(const MassSolve *c, const PetscReal *x)
 {
-  if (c->width == 4) multiply(4, c, x);
-  else multiply(6, c, x);
+  if (c->width == 4) multiply(4, 1, c, x);
+  else if (c->alone) multiply(6, 1, c, x);
+  else multiply(6, 2, c, x);
 }

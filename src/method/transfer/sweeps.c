@@ -24,7 +24,7 @@ PetscErrorCode MassSolveDestroy(MassSolve *c)
   PetscFunctionBeginUser;
   PetscCall(PetscFree5(c->x, c->lack, c->inverse, c->direction, c->product));
   PetscCall(PetscFree(c->reached));
-  PetscCall(MassRowsDestroy(&c->rows));
+  if (!c->kept) PetscCall(MassRowsDestroy(&c->rows));
   PetscFunctionReturn(0);
 }
 
@@ -115,7 +115,9 @@ static PetscErrorCode Sweep(MassSolve *c, const PetscBool done[MOTIONS], PetscRe
   PetscFunctionBeginUser;
   WITH_DIM(aim, c->dim, c, grow);
   PetscCall(GridToGhosts(c->s->grid, c->width, c->direction));
+  c->alone = done[ACCELERATION];
   PetscCall(c->multiply(c, c->direction));
+  c->alone = PETSC_FALSE;
   PetscCall(Products(c, c->direction, c->product, NULL, curvature));
   for (int f = 0; f < MOTIONS; ++f) length[f] = !done[f] && curvature[f] > 0 ? now[f] / curvature[f] : 0;
   WITH_DIM(go, c->dim, c, length);

@@ -223,8 +223,9 @@ static const SchemaEntry stabilisation_entries[] = {
     "basis gimp and bspline: a node with less than this of half its share of the cells follows those inside the body, "
     "as a linear function does; where it cannot, `curvature` holds it; with gimp those that loads on a body's surface "
     "act on follow below 0.1 in any case",
-    .note = "0.02; in a case without stages 0 in dynamics, 0.1 in statics if a law yields", BETWEEN(0, 1),
-    AT(StabilisationSpec, follow)),
+    .note = "0.02; in a case without stages 0 in dynamics, 0.3 with transfer consistent if no law yields, "
+            "0.1 in statics if one does",
+    BETWEEN(0, 1), AT(StabilisationSpec, follow)),
   KEY("mass", NUMBER, NULL, "share of the mass that is lumped at the nodes, times the empty part of the cell",
       .note = "1 if a law of the case yields; else 0.1, with transfer consistent 0.3, and 0 with basis gimp",
       BETWEEN(0, 1), AT(StabilisationSpec, mass)),
