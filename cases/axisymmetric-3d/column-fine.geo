@@ -1,2 +1,0 @@
-h = 1 / 150;
-Include "column.geo";
