@@ -195,7 +195,8 @@ static void exhaust(const char *name, const char *text)
   "boundary: [{on: {y: 0}, fix: [x, y]}]\nmeasures: {tip: {displacement: y, of: {tracer: [1, 0.5]}}}\n"
 #define BODIES \
   "bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: m}]\n" MATERIALS
-#define BOX "grid: {box: {min: [0, 0], max: [2, 1]}, size: 0.25}\n"
+/* Larger than the body: a warning that finds no memory is lost, by design, and is nothing to try. */
+#define BOX "grid: {box: {min: [-0.25, 0], max: [2, 1.25]}, size: 0.25}\n"
 
 static void test_mpm(void **state)
 {
