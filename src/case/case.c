@@ -218,10 +218,13 @@ PetscBool case_dilates(const Case *c)
   return PETSC_FALSE;
 }
 
+PetscReal analysis_usual_beta(const AnalysisSpec *a) { return 0.25 * (1 - a->bossak) * (1 - a->bossak); }
+PetscReal analysis_usual_gamma(const AnalysisSpec *a) { return 0.5 - a->bossak; }
+
 PetscBool analysis_tunes_newmark(const AnalysisSpec *a)
 {
-  const PetscReal beta = 0.25 * (1 - a->bossak) * (1 - a->bossak), gamma = 0.5 - a->bossak;
-  return (PetscBool)(PetscAbsReal(a->beta - beta) > 1e-12 || PetscAbsReal(a->gamma - gamma) > 1e-12);
+  return (PetscBool)(PetscAbsReal(a->beta - analysis_usual_beta(a)) > 1e-12 ||
+                     PetscAbsReal(a->gamma - analysis_usual_gamma(a)) > 1e-12);
 }
 
 PetscBool case_is_static(const AnalysisSpec *analysis)

@@ -513,7 +513,9 @@ PetscBool case_has_contact(const Case *c, ContactKind kind);
 PetscBool case_dilates(const Case *c); /* has any material a dilatancy angle? */
 /* Equilibrium at every step, no inertia: a factor of safety is found so, too. Else there is inertia. */
 PetscBool case_is_static(const AnalysisSpec *analysis);
-/* Are beta and gamma others than those that `bossak` asks for? */
+/* What `bossak` asks for, and whether the case has others. */
+PetscReal analysis_usual_beta(const AnalysisSpec *analysis);
+PetscReal analysis_usual_gamma(const AnalysisSpec *analysis);
 PetscBool analysis_tunes_newmark(const AnalysisSpec *analysis);
 /* Explicit dynamics: share of the critical step that is taken. musl bears all of it, usl two thirds (docs/theory.md,
  * "Explicit dynamics"). */

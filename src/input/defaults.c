@@ -30,9 +30,10 @@ static PetscBool keeps_all(const Case *c)
 /* Statics in which nodes follow others, and no stage comes before or after. */
 static PetscBool stands_alone(const Case *c) { return case_is_static(&c->analysis) && !c->spec && !case_is_mixed(c); }
 
-/* Nodes that follow others make a matrix without lumped mass well conditioned, and take less energy than what holds them
- * to linear motion; with lumped mass they cost what swings a fifth more iterations. What has come to rest in a stage
- * before must find the same nodes. Where statics yields those follow, too, that are reached a little more (section 62). */
+/* Nodes that follow others make a matrix without lumped mass well conditioned, and take less energy than what holds
+ * them to linear motion; with lumped mass they cost what swings a fifth more iterations. What has come to rest in a
+ * stage before must find the same nodes. Where statics yields those follow, too, that are reached a little more
+ * (docs/theory.md, section 62). */
 static PetscReal share_that_follows(const Case *c)
 {
   const PetscBool yields = anything_yields(c);
@@ -56,38 +57,34 @@ void default_stabilisation(const YamlNode *given, Case *c)
   if (!yaml_find(given, "follow")) c->stabilisation.follow = share_that_follows(c);
 }
 
-/* Why points keep their gradients, or do not. What only swings, turns and bounces keeps its energy by them
- * (docs/experiments/basis.md, "Defaults once more"), and in explicit steps its spin; what flows gains nothing, and
- * explicitly goes too far. What slides with friction and nothing that damps it squeals, and then slides too easily. */
-static const char *reason(const Case *c, PetscBool *slopes)
+/* What only swings, turns and bounces keeps its energy by gradients that points carry (docs/experiments/basis.md,
+ * "Defaults once more"), and in explicit steps its spin; what flows gains nothing, and explicitly goes too far. What
+ * slides with friction and nothing that damps it squeals, and then slides too easily. */
+const char *default_transfer(const Case *c, const char **why)
 {
   const AnalysisSpec *a = &c->analysis;
   const Method *method = c->method ? method_find(c->method) : NULL;
-  *slopes = PETSC_FALSE;
-  if (case_is_static(a) || a->keep_velocity || !method || !method->restores_grid) return "";
-  if (anything_yields(c)) return ", the default where a law yields";
-  if (a->type == ANALYSIS_DYNAMIC && case_has_contact(c, CONTACT_FRICTION)) return ", the default with friction";
-  if (a->type == ANALYSIS_DYNAMIC && !method_transfers(c, transfer_find("consistent"), basis_find(c->basis.kind)))
-    return "; consistent, which keeps more energy, goes with scheme midpoint";
-  *slopes = (PetscBool)(a->type == ANALYSIS_DYNAMIC || a->update == EXPLICIT_MUSL);
-  return *slopes ? ", the default where no law yields and nothing rubs" : "";
-}
-
-const char *default_transfer(const Case *c)
-{
-  PetscBool slopes;
-  reason(c, &slopes);
-  return slopes ? "consistent" : transfers[0]->name;
+  const Transfer *thesis = transfers[0], *slopes = transfer_find("consistent");
+  const PetscBool implicit = a->type == ANALYSIS_DYNAMIC;
+  const char *ignored;
+  if (!why) why = &ignored;
+  *why = "";
+  if (case_is_static(a) || a->keep_velocity || !method || !method->restores_grid) return thesis->name;
+  if (a->type == ANALYSIS_EXPLICIT && a->update != EXPLICIT_MUSL) return thesis->name;
+  *why = ", the default where a law yields";
+  if (anything_yields(c)) return thesis->name;
+  *why = ", the default with friction";
+  if (implicit && case_has_contact(c, CONTACT_FRICTION)) return thesis->name;
+  *why = "; consistent, which keeps more energy, goes with scheme midpoint";
+  if (implicit && !method_transfers(c, slopes, basis_find(c->basis.kind))) return thesis->name;
+  *why = ", the default where no law yields and nothing rubs";
+  return slopes->name;
 }
 
 PetscErrorCode DefaultTransfer(Case *c)
 {
-  PetscBool slopes;
-
   PetscFunctionBeginUser;
-  if (c->analysis.transfer) PetscFunctionReturn(0);
-  c->transfer_why = reason(c, &slopes);
-  PetscCall(PetscStrallocpy(default_transfer(c), &c->analysis.transfer));
+  if (!c->analysis.transfer) PetscCall(PetscStrallocpy(default_transfer(c, &c->transfer_why), &c->analysis.transfer));
   PetscFunctionReturn(0);
 }
 

@@ -5,7 +5,8 @@
 
 /* Of what `given`, the mapping of that name or NULL, has no key for. */
 void default_stabilisation(const YamlNode *given, Case *c);
-const char *default_transfer(const Case *c);
+/* By its name; why: words that go on behind it, may be NULL. */
+const char *default_transfer(const Case *c, const char **why);
 /* Where the case names none. */
 PetscErrorCode DefaultTransfer(Case *c);
 PetscErrorCode DefaultScheme(Case *c);

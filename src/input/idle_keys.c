@@ -165,9 +165,9 @@ static Case usual_of(const Case *c)
   Case usual = *c;
   AnalysisSpec *a = &usual.analysis;
   a->scheme = NULL;
-  a->transfer = (char *)default_transfer(&usual);
-  a->beta = 0.25 * (1 - a->bossak) * (1 - a->bossak);
-  a->gamma = 0.5 - a->bossak;
+  a->beta = analysis_usual_beta(a);
+  a->gamma = analysis_usual_gamma(a);
+  a->transfer = (char *)default_transfer(&usual, NULL);
   a->smallest = a->step / 1024;
   a->largest = a->step;
   a->courant = 0;

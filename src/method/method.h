@@ -52,5 +52,5 @@ PetscBool method_transfers(const Case *c, const struct Transfer *transfer, const
 const char *method_basis(const Method *method, const Case *c);
 /* Which basis the case has, and why if it did not name it: a line for people. */
 void method_tell_basis(const Method *method, const Case *c, size_t size, char *text);
-/* The same of the transfer, with the scheme that goes with it. */
-void method_tell_transfer(const Case *c, size_t size, char *text);
+/* The same of the transfer, with the scheme that goes with it; no: nodes take no motion from points there. */
+PetscBool method_tell_transfer(const Method *method, const Case *c, size_t size, char *text);

@@ -75,8 +75,10 @@ void method_tell_basis(const Method *method, const Case *c, size_t size, char *t
              last ? ": {}} is the thesis's" : "");
 }
 
-void method_tell_transfer(const Case *c, size_t size, char *text)
+PetscBool method_tell_transfer(const Method *method, const Case *c, size_t size, char *text)
 {
   const AnalysisSpec *a = &c->analysis;
+  if (!method->restores_grid || case_is_static(a)) return PETSC_FALSE;
   snprintf(text, size, "%s%s; scheme %s", a->transfer, c->transfer_why ? c->transfer_why : "", time_scheme_of(a)->name);
+  return PETSC_TRUE;
 }

@@ -105,9 +105,9 @@ static const struct {
   {MOVING("mpm", ", bossak: -0.1") "basis: cell\n", "consistent", "consistent, the default"},
   {MOVING("mpm", ", keep_velocity: true"), "thesis", "thesis"},
   {MOVING("mpm", ", transfer: thesis"), "thesis", "thesis; scheme newmark"},
-  {MOVING("fem", ""), "thesis", "thesis"},
-  {MOVING("gmm", ""), "thesis", "thesis"},
-  {PLAIN, "thesis", "thesis"},
+  {MOVING("fem", ""), "thesis", ""},
+  {MOVING("gmm", ""), "thesis", ""},
+  {PLAIN, "thesis", ""},
   {EXPLICIT(""), "consistent", "consistent, the default where no law yields and nothing rubs; scheme explicit"},
   {EXPLICIT(", update: usl"), "thesis", "thesis"},
   {EXPLICIT("") YIELDS, "thesis", "thesis, the default where a law yields"},
@@ -119,7 +119,7 @@ static void Transferred(void **state)
   (void)state;
   for (size_t i = 0; i < sizeof transferred / sizeof transferred[0]; ++i) {
     Case *c = read_good(transferred[i].text);
-    method_tell_transfer(c, sizeof told, told);
+    if (!method_tell_transfer(method_find(c->method), c, sizeof told, told)) told[0] = 0;
     if (strcmp(c->analysis.transfer, transferred[i].name) ||
         strncmp(told, transferred[i].told, strlen(transferred[i].told)))
       fail_msg("%s\nhas transfer %s (%s)", transferred[i].text, c->analysis.transfer, told);

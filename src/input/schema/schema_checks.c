@@ -41,8 +41,8 @@ static void resolve_bounds(SchemaReader *r, const YamlNode *mapping, AnalysisSpe
 static void resolve_newmark(const YamlNode *mapping, AnalysisSpec *a)
 {
   const YamlNode *beta = yaml_find(mapping, "beta"), *gamma = yaml_find(mapping, "gamma");
-  if (!beta) a->beta = 0.25 * (1 - a->bossak) * (1 - a->bossak);
-  if (!gamma) a->gamma = 0.5 - a->bossak;
+  if (!beta) a->beta = analysis_usual_beta(a);
+  if (!gamma) a->gamma = analysis_usual_gamma(a);
 }
 
 PetscErrorCode SchemaCheckReduction(SchemaReader *r, const YamlNode *mapping, void *target)

@@ -3,6 +3,8 @@
 
 #define SUM_NUMBERS ((PetscInt)(sizeof(ContactSum) / sizeof(PetscReal)))
 
+static PetscBool rubs(ContactKind kind) { return kind == CONTACT_FRICTION || kind == CONTACT_STICK; }
+
 PetscBool contact_rubs(const Case *c)
 {
   return (PetscBool)(case_has_contact(c, CONTACT_FRICTION) || case_has_contact(c, CONTACT_STICK));
@@ -186,9 +188,7 @@ static ContactWork point_work(const Model *m, const ContactPoint *c)
     work.sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
   }
   work.closing += pressure * closing;
-  if (c->law.kind != CONTACT_FRICTION &&
-      c->law.kind !=
-        CONTACT_STICK) { /* along a wall that does not rub only a force does work that had another normal before */
+  if (!rubs(c->law.kind)) { /* along a wall that does not rub only a force does work that had another normal before */
     work.closing -= work.sliding;
     work.sliding = 0;
   }

@@ -245,10 +245,7 @@ static PetscErrorCode ReportSizes(Model *m, Diag *diag, FILE *out)
       text_position(m->dim, m->grid->min, from), text_position(m->dim, m->grid->max, to));
   method_tell_basis(m->method, m->c, sizeof told, told);
   say(m, out, "#   basis: %s\n", told);
-  if (m->method->restores_grid && m->scheme->inertia) {
-    method_tell_transfer(m->c, sizeof told, told);
-    say(m, out, "#   transfer: %s\n", told);
-  }
+  if (method_tell_transfer(m->method, m->c, sizeof told, told)) say(m, out, "#   transfer: %s\n", told);
   report_followers(m, out);
   say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
   report_memory(m, estimated_memory(m, points, unknowns, all_pairs), diag, out);

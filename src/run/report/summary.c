@@ -39,10 +39,7 @@ PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
   PetscCall(RunDirLog(dir, "method = %s", m->method->name));
   method_tell_basis(m->method, m->c, sizeof told, told);
   PetscCall(RunDirLog(dir, "basis = %s", told));
-  if (m->method->restores_grid && m->scheme->inertia) {
-    method_tell_transfer(m->c, sizeof told, told);
-    PetscCall(RunDirLog(dir, "transfer = %s", told));
-  }
+  if (method_tell_transfer(m->method, m->c, sizeof told, told)) PetscCall(RunDirLog(dir, "transfer = %s", told));
   if (case_seeks(&m->c->analysis))
     PetscCall(RunDirLog(dir, "formulation = %s%s", m->formulation->name,
                         m->formulation->cells && case_dilates(m->c) ? ", the default with a dilatancy angle" : ""));

@@ -130,8 +130,7 @@ const SchemaTable schema_basis = {
   .name = "basis",
   .help =
     "Shape functions. Without it mpm has gimp in boxes of quadrilaterals and hexahedra, and cell where that does not "
-    "go "
-    "(other grids, formulation mean-dilatation, in space formulation mixed; a named transfer consistent with "
+    "go (other grids, formulation mean-dilatation, in space formulation mixed; a named transfer consistent with "
     "formulation mixed, bossak, or another scheme than midpoint); fem has cell, gmm lme. Lengths are counted in cells "
     "of the grid that gives the nodes.",
   .entries = schema_bases,
