@@ -108,14 +108,11 @@ static PetscErrorCode Find(const Discretisation *s, const Extension *e, PetscInt
                                              const PetscInt at[3]),
                            PetscReal *value)
 {
-  PetscInt at[3];
-
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < n; ++k) {
     const PetscInt node = list ? list[k] : k;
     if (node >= s->grid->n_owned) continue;
-    place_of(s->grid->box, e, node, at);
-    value[node] = find(s, e, node, at);
+    value[node] = find(s, e, node, e->place[node]);
   }
   PetscCall(GridToGhosts(s->grid, 1, value));
   PetscFunctionReturn(0);

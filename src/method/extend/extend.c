@@ -1,21 +1,32 @@
 #include "method/extend/extend.h"
 #include "method/extend/choose.h"
+#include "method/extend/keep.h"
 #include "method/extend/row.h"
 #include "support/products.h"
 
-#define ALL -1
+static void find_places(const GridBox *box, PetscInt (*place)[3])
+{
+  const VoxelBlock *all = &box->nodes;
+  const PetscInt nx = all->hi[0] - all->lo[0], ny = all->hi[1] - all->lo[1];
+  for (PetscInt k = 0; k < block_size(all); ++k) {
+    PetscInt *at = place[box->lattice[k]];
+    at[0] = all->lo[0] + k % nx;
+    at[1] = all->lo[1] + k / nx % ny;
+    at[2] = all->lo[2] + k / (nx * ny);
+  }
+}
 
 static PetscErrorCode ExtensionCreate(const Discretisation *s, Extension **extension)
 {
   const GridBox *box = s->grid->box;
-  const PetscInt n = s->grid->n_nodes, known = box ? block_size(&box->nodes) : 0;
+  const PetscInt n = s->grid->n_nodes;
   Extension *e;
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&e));
-  PetscCall(PetscCalloc5(n, &e->fill, n, &e->loaded, n, &e->leads, n, &e->ways, n, &e->place));
+  PetscCall(PetscCalloc6(n, &e->fill, n, &e->loaded, n, &e->leads, n, &e->ways, n, &e->place, n, &e->extent));
   PetscCall(PetscMalloc3(n, &e->follower, n, &e->listed, n, &e->beside));
-  for (PetscInt k = 0; k < known; ++k) e->place[box->lattice[k]] = k;
+  if (box) find_places(box, e->place);
   PetscCall(SupportCreate(&e->spare));
   PetscCall(SupportCreate(&e->carried));
   PetscCall(SupportCreate(&e->spare_carried));
@@ -30,7 +41,7 @@ PetscErrorCode ExtensionDestroy(Extension **extension)
 
   PetscFunctionBeginUser;
   if (!e) PetscFunctionReturn(0);
-  PetscCall(PetscFree5(e->fill, e->loaded, e->leads, e->ways, e->place));
+  PetscCall(PetscFree6(e->fill, e->loaded, e->leads, e->ways, e->place, e->extent));
   PetscCall(SupportDestroy(&e->spare));
   PetscCall(SupportDestroy(&e->carried));
   PetscCall(SupportDestroy(&e->spare_carried));
@@ -47,139 +58,19 @@ PetscBool extension_works(const Discretisation *s)
   return implicit && s->grid->box && !s->nodes->pressure && asked ? PETSC_TRUE : PETSC_FALSE;
 }
 
-void place_of(const GridBox *box, const Extension *e, PetscInt node, PetscInt at[3])
-{
-  const VoxelBlock *all = &box->nodes;
-  const PetscInt k = e->place[node], nx = all->hi[0] - all->lo[0], ny = all->hi[1] - all->lo[1];
-  at[0] = all->lo[0] + k % nx;
-  at[1] = all->lo[1] + k / nx % ny;
-  at[2] = all->lo[2] + k / (nx * ny);
-}
-
-/* Do all of these nodes stand around one corner of the cell, as the system's pattern has it? */
-static PetscBool stand_around(const Discretisation *s, const PetscInt cell[3], const Row *row)
-{
-  PetscInt at[3];
-  for (PetscInt d = 0; d < s->grid->dim; ++d) {
-    PetscInt low = cell[d] + 2, high = cell[d] - 1;
-    for (PetscInt I = 0; I < row->n; ++I) {
-      place_of(s->grid->box, s->extension, row->node[I], at);
-      low = PetscMin(low, at[d]);
-      high = PetscMax(high, at[d]);
-    }
-    if (low < cell[d] - 1 || high > cell[d] + 2 || high - low > 2) return PETSC_FALSE;
-  }
-  return PETSC_TRUE;
-}
-
-/* Points, or carriers of loads, and what they see. */
-typedef struct {
-  const Points *points;
-  const Support *support;
-  PetscInt slopes; /* numbers of dN a node */
-} Seen;
-
-static Seen points_of(const Discretisation *s) { return (Seen){s->points, s->support, s->grid->dim}; }
-static Seen carriers_of(const Discretisation *s)
-{
-  return (Seen){s->loads->carriers, s->extension->carried, s->loads->slopes};
-}
-
-static PetscBool sees_follower(const Discretisation *s, const Support *w, PetscInt p)
-{
-  for (PetscInt I = w->node_start[p]; I < w->node_start[p + 1]; ++I)
-    if (s->extension->ways[w->node[I]] > 0) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-/* A sum over n nodes once followers are gone, or `only` that one, and the others are not there; PETSC_FALSE: not all
- * nodes are known to this rank. */
+/* A sum over n nodes once followers are gone; PETSC_FALSE: not all nodes are known to this rank. */
 static PetscBool sum_row(const Discretisation *s, PetscInt slopes, PetscInt n, const PetscInt *node, const PetscReal *N,
-                         const PetscReal *dN, PetscInt only, Row *row)
+                         const PetscReal *dN, Row *row)
 {
-  PetscInt at[3];
+  const Extension *e = s->extension;
   row->n = 0;
   for (PetscInt I = 0; I < n; ++I) {
-    const PetscInt ways = (PetscInt)s->extension->ways[node[I]];
-    if (ways && only != ALL && only != node[I]) continue;
-    place_of(s->grid->box, s->extension, node[I], at);
+    const PetscInt ways = (PetscInt)e->ways[node[I]];
     if (!ways) row_add(row, slopes, node[I], 1, N[I], dN + I * slopes);
-    else if (!row_add_follower(row, slopes, s->grid->box, at, ways, N[I], dN + I * slopes)) return PETSC_FALSE;
+    else if (!row_add_follower(row, slopes, s->grid->box, e->place[node[I]], ways, N[I], dN + I * slopes))
+      return PETSC_FALSE;
   }
   return PETSC_TRUE;
-}
-
-/* What point p sees then; PETSC_FALSE if these nodes are farther apart than those of a point may be, too. */
-static PetscBool find_row(const Discretisation *s, const Seen *seen, PetscInt p, PetscInt only, Row *row)
-{
-  const Support *w = seen->support;
-  const PetscReal *N = w->N + w->value_start[p], *dN = w->dN + w->value_start[p] * seen->slopes;
-  PetscInt at[3];
-  if (!sum_row(s, seen->slopes, support_nodes(w, p), w->node + w->node_start[p], N, dN, only, row)) return PETSC_FALSE;
-  box_voxel_of(s->grid, seen->points->cell[p], at);
-  return stand_around(s, at, row);
-}
-
-/* Marks the followers that point p cannot do without: each whose leaders alone are too far away, all if none is. */
-static void mark_seen(const Discretisation *s, const Seen *seen, PetscInt p, PetscReal *needed)
-{
-  const Support *w = seen->support;
-  PetscBool found = PETSC_FALSE;
-  Row row;
-  for (PetscInt I = w->node_start[p]; I < w->node_start[p + 1]; ++I) {
-    if (s->extension->ways[w->node[I]] == 0 || find_row(s, seen, p, w->node[I], &row)) continue;
-    needed[w->node[I]] = 1;
-    found = PETSC_TRUE;
-  }
-  for (PetscInt I = w->node_start[p]; I < w->node_start[p + 1] && !found; ++I) needed[w->node[I]] = 1;
-}
-
-/* Marks nodes that must stay: those of points that would see others too far away. */
-static void mark_lookers(const Discretisation *s, const Seen *seen, PetscReal *needed)
-{
-  Row row;
-  for (PetscInt p = 0; p < seen->support->n_groups; ++p)
-    if (sees_follower(s, seen->support, p) && !find_row(s, seen, p, ALL, &row)) mark_seen(s, seen, p, needed);
-}
-
-/* And those that loads act on by functions of their cells. */
-static void mark_loaded(const Discretisation *s, PetscReal *needed)
-{
-  const Points *carriers = s->loads->carriers;
-  const PetscInt nn = s->grid->nodes_per_cell;
-  for (PetscInt p = 0; p < carriers->n; ++p)
-    for (PetscInt I = 0; carriers->cell[p] >= 0 && I < nn; ++I)
-      needed[s->grid->cell_node[carriers->cell[p] * nn + I]] = 1;
-}
-
-static void mark_needed(const Discretisation *s, PetscReal *needed)
-{
-  const Seen points = points_of(s), carriers = carriers_of(s);
-  mark_lookers(s, &points, needed);
-  if (s->basis->carries) mark_lookers(s, &carriers, needed);
-  else mark_loaded(s, needed);
-}
-
-/* *again: have any that were to follow been kept, so that points see others than was thought? */
-static PetscErrorCode KeepNeeded(const Discretisation *s, PetscBool *again)
-{
-  const Grid *grid = s->grid;
-  PetscReal *needed;
-  PetscBool here = PETSC_FALSE;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(grid->n_nodes, &needed));
-  mark_needed(s, needed);
-  PetscCall(GridSumToOwners(grid, 1, needed));
-  PetscCall(GridToGhosts(grid, 1, needed));
-  for (PetscInt i = 0; i < grid->n_nodes; ++i) {
-    if (!(needed[i] > 0) || s->extension->ways[i] == 0) continue;
-    s->extension->ways[i] = 0;
-    here = PETSC_TRUE;
-  }
-  PetscCall(PetscFree(needed));
-  PetscCallMPI(MPI_Allreduce(&here, again, 1, MPIU_BOOL, MPI_LOR, grid->comm));
-  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Fill(Discretisation *s, PetscReal *fill)
@@ -213,11 +104,13 @@ static PetscErrorCode Rewrite(const Discretisation *s, const Seen *seen, Support
   PetscCall(SupportReserve(out, old->n_groups, room, room, slopes));
   for (PetscInt p = 0; p < old->n_groups; ++p) {
     const PetscInt from = old->node_start[p], nn = support_nodes(old, p);
+    const PetscInt *node = old->node + from;
+    const PetscReal *N = old->N + from, *dN = old->dN + from * slopes;
     const PetscBool changes = sees_follower(s, old, p);
     product_group(out, p, n);
-    if (changes) (void)find_row(s, seen, p, ALL, &row);
+    if (changes) (void)sum_row(s, slopes, nn, node, N, dN, &row);
     if (changes) PetscCall(CopyRow(out, slopes, row.n, n, row.node, row.N, row.dN));
-    else PetscCall(CopyRow(out, slopes, nn, n, old->node + from, old->N + from, old->dN + from * slopes));
+    else PetscCall(CopyRow(out, slopes, nn, n, node, N, dN));
     n += changes ? row.n : nn;
   }
   products_end(out, old->n_groups, n);
@@ -234,7 +127,7 @@ static void swap(Support *a, Support *b)
 /* The supports without the nodes that follow take the place of the others. */
 static PetscErrorCode RewriteAll(Discretisation *s)
 {
-  const Seen points = points_of(s), carriers = carriers_of(s);
+  const Seen points = seen_by_points(s), carriers = seen_by_carriers(s);
   Extension *e = s->extension;
 
   PetscFunctionBeginUser;
@@ -300,7 +193,7 @@ PetscBool extension_bends(const void *space, PetscInt p, PetscInt n, PetscReal *
     for (PetscInt k = 0; k < n * s->grid->dim; ++k) bend[k] = raw[k];
     return (PetscBool)(seen == n);
   }
-  if (!sum_row(s, s->grid->dim, seen, node, none, raw, ALL, &row) || row.n != n) return PETSC_FALSE;
+  if (!sum_row(s, s->grid->dim, seen, node, none, raw, &row) || row.n != n) return PETSC_FALSE;
   for (PetscInt k = 0; k < n * s->grid->dim; ++k) bend[k] = row.dN[k];
   return PETSC_TRUE;
 }
@@ -313,8 +206,6 @@ const Support *followers_see(const Discretisation *s, const Points *followers)
 
 PetscErrorCode DiscretisationExtend(Discretisation *s, const BasisInput *in)
 {
-  PetscBool again = PETSC_TRUE;
-
   PetscFunctionBeginUser;
   if (!s->extension) PetscCall(ExtensionCreate(s, &s->extension));
   Extension *e = s->extension;
@@ -326,7 +217,7 @@ PetscErrorCode DiscretisationExtend(Discretisation *s, const BasisInput *in)
   if (!extension_works(s)) PetscFunctionReturn(0);
   PetscCall(ExtensionLoaded(s));
   PetscCall(ChooseWays(s, e));
-  while (again) PetscCall(KeepNeeded(s, &again));
+  PetscCall(ExtensionKeep(s));
   PetscCall(ExtensionList(s, s->grid->n_nodes, NULL, &e->any));
   if (e->n_followers) PetscCall(RewriteAll(s));
   PetscFunctionReturn(0);

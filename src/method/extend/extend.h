@@ -3,6 +3,12 @@
 #pragma once
 #include "method/discretisation.h"
 
+/* Of nodes beside one: how many steps along each axis, downwards and upwards. */
+typedef struct {
+  signed char low[3], high[3];
+  signed char unknown; /* not all of them are known to this rank */
+} Extent;
+
 typedef struct Extension {
   /* n_nodes: volume of the material around the node, of half its share of the cells; by_mass: mass over that share, to
    * be compared with the nodes around */
@@ -11,7 +17,8 @@ typedef struct Extension {
   PetscReal *loaded;      /* n_nodes: does a piece of a loaded surface see it? */
   PetscReal *leads;       /* n_nodes: bits of leads_bit */
   PetscReal *ways;        /* n_nodes: bits of the ways on which the node follows; 0: it does not */
-  PetscInt *place;        /* n_nodes: in the block of the nodes that this rank knows */
+  PetscInt (*place)[3];   /* n_nodes: in the box */
+  Extent *extent;         /* n_nodes: of what has its place once followers are gone */
   Support *spare;         /* the support as the basis left it, in the last step in which nodes followed */
   Support *carried;       /* what carriers of loads see, where they push by the basis's functions, */
   Support *spare_carried; /* and the same as the basis left it */
@@ -47,8 +54,6 @@ PetscErrorCode ExtensionTake(const Discretisation *space, PetscInt n, PetscReal 
 PetscErrorCode ExtensionList(const Discretisation *space, PetscInt n, const PetscInt *among, PetscBool *any);
 /* Collective. The nodes that pieces of a loaded surface see; ghosts too. */
 PetscErrorCode ExtensionLoaded(const Discretisation *space);
-/* The place of a local node in the box. */
-void place_of(const GridBox *box, const Extension *extension, PetscInt node, PetscInt at[3]);
 /* The functions by which the field moves these: tracers or carriers, of such a basis; NULL: those of their cells. */
 const Support *followers_see(const Discretisation *space, const Points *followers);
 /* Collective. du, v1 and a1 of nodes that follow, for tracers. */

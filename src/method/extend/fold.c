@@ -12,11 +12,11 @@ static void pass(const Discretisation *s, PetscBool back, PetscInt n, PetscReal 
   const Extension *e = s->extension;
   const GridBox *box = s->grid->box;
   const PetscReal none = 0;
-  PetscInt here[3], step[3];
+  PetscInt step[3];
   Row row;
   for (PetscInt k = 0; k < e->n_followers; ++k) {
     const PetscInt ways = (PetscInt)e->ways[e->follower[k]];
-    place_of(box, e, e->follower[k], here);
+    const PetscInt *here = e->place[e->follower[k]];
     for (PetscInt way = 0; way < WAYS; ++way) {
       row.n = 0;
       way_of(way, step);
@@ -98,12 +98,12 @@ PetscErrorCode ExtensionList(const Discretisation *s, PetscInt n, const PetscInt
 /* Of the nodes of a list, those that loads act on, and all around these once, marked in `leads` meanwhile. */
 static PetscInt list_around(const Discretisation *s, Extension *e, PetscInt n, const PetscInt *active, PetscInt *beside)
 {
-  PetscInt at[3], step[3], found = 0;
+  PetscInt step[3], found = 0;
   e->n_listed = 0;
   for (PetscInt k = 0; k < n; ++k) {
     if (!(e->loaded[active[k]] > 0)) continue;
     e->listed[e->n_listed++] = active[k];
-    place_of(s->grid->box, e, active[k], at);
+    const PetscInt *at = e->place[active[k]];
     for (PetscInt way = 0; way < WAYS; ++way) {
       way_of(way, step);
       const PetscInt node = s->grid->dim == 3 || !step[2] ? node_beside(s->grid->box, at, step) : -1;

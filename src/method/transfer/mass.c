@@ -1,4 +1,4 @@
-#include "method/transfer/mass.h"
+#include "method/transfer/lines.h"
 #include "method/transfer/loops.h"
 
 /* Products by points before the matrix is summed up: short solves are not worth it. */
@@ -88,6 +88,14 @@ static PetscErrorCode SumUp(MassSolve *c)
   PetscFunctionReturn(0);
 }
 
+/* Sweeps that aim along lines take the matrix from the first on. */
+static PetscErrorCode Prepare(MassSolve *c)
+{
+  PetscFunctionBeginUser;
+  if (!c->rows && mass_lines_work(c->s)) PetscCall(SumUp(c));
+  PetscFunctionReturn(0);
+}
+
 /* product = M x, on owners. */
 static PetscErrorCode Multiply(MassSolve *c, PetscReal *x)
 {
@@ -109,6 +117,7 @@ PetscErrorCode MassSolveCreate(const Discretisation *s, MassSolve *c)
 {
   PetscFunctionBeginUser;
   PetscCall(MassSolveAllocate(s, Multiply, c));
+  c->prepare = Prepare;
   WITH_SIZES(add_diagonal, s, s, c->product);
   PetscCall(GridSumToOwners(s->grid, 1, c->product));
   for (PetscInt node = 0; node < s->grid->n_owned; ++node) {

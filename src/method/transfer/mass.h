@@ -12,25 +12,34 @@
 enum { VELOCITY, ACCELERATION, MOTIONS };
 
 typedef struct MassSolve MassSolve;
-/* M of this rank's points, row by row of local nodes. */
+typedef struct MassLines MassLines; /* lines.h */
+/* Entries by rows of local nodes. */
+typedef struct {
+  PetscInt room, *start, *column; /* n_nodes + 1; local nodes */
+  PetscReal *entry;               /* kg */
+} MassPairs;
+
+/* M of this rank's points. */
 typedef struct MassRows {
-  PetscBool known; /* or is there only room? */
-  PetscInt nodes, room;
-  PetscInt *start, *column; /* n_nodes + 1; local nodes */
-  PetscReal *entry;         /* kg */
+  PetscBool known;       /* or is there only room? */
+  MassPairs half, whole; /* each pair of nodes once, each node first in its own row; with both */
+  MassLines *lines;      /* NULL: sweeps aim by the diagonal */
 } MassRows;
 /* Collective. product = M x, on owners; x is right on all copies. */
 typedef PetscErrorCode (*MassMultiply)(MassSolve *solve, PetscReal *x);
+/* Collective. What sweeps want, before the first of them. */
+typedef PetscErrorCode (*MassPrepare)(MassSolve *solve);
 
 struct MassSolve {
   const Discretisation *s;
   MassMultiply multiply;
+  MassPrepare prepare;       /* NULL: nothing is to be done */
   PetscInt dim, width, size; /* width: 2 dim; size: n_nodes x width */
   /* the motion sought, on all copies when the equations are solved, m/s, m/s2 */
   PetscReal *x;
   PetscReal *lack;    /* right-hand side - M x, on owners, kg m/s, N */
   PetscReal *inverse; /* of M's diagonal, 0 where x is given or nothing has mass, on owners, 1/kg */
-  PetscReal *direction, *product;
+  PetscReal *direction, *product, *aim;
   /* local nodes that sweeps go over, owned ones first; of the others nothing is read of a product */
   PetscInt n_reached, n_reached_owned, *reached;
   PetscBool framed;  /* are components those in the frames of nodes that slide? */

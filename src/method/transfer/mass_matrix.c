@@ -2,7 +2,7 @@
  *
  * A sweep over rows costs what its nodes have neighbours, one over points what these have nodes, twice: with the 16
  * and 64 nodes of smooth functions ten times as much. To sum the rows up costs as much as a few sweeps over points. */
-#include "method/transfer/mass.h"
+#include "method/transfer/lines.h"
 #include "method/transfer/loops.h"
 
 /* Which groups have a node, and as which of theirs. */
@@ -35,24 +35,24 @@ static PetscErrorCode SharersDestroy(Sharers *s)
   PetscFunctionReturn(0);
 }
 
-/* row = that of node I in the matrix of group g. */
+/* row = that of node I in the matrix of group g, from I on: the rest is the image of other rows. */
 static void row_of_group(const Discretisation *s, PetscInt g, PetscInt I, PetscReal *row)
 {
   const Support *w = s->support;
   const PetscInt nn = support_nodes(w, g);
   const PetscReal tie = mass_tie(s, g), lumping = mass_lumping(s, g), *N = w->N + w->value_start[g];
   PetscReal diagonal = tie;
-  for (PetscInt J = 0; J < nn; ++J) row[J] = -tie / (PetscReal)nn;
+  for (PetscInt J = I; J < nn; ++J) row[J] = -tie / (PetscReal)nn;
   for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p, N += nn) {
     const PetscReal m = s->points->real[POINT_MASS][p] * N[I], shared = (1 - lumping) * m;
     if (m == 0) continue;
     diagonal += lumping * m;
-    for (PetscInt J = 0; J < nn; ++J) row[J] += shared * N[J];
+    for (PetscInt J = I; J < nn; ++J) row[J] += shared * N[J];
   }
   row[I] += diagonal;
 }
 
-static PetscErrorCode Reserve(MassRows *rows, PetscInt n)
+static PetscErrorCode Reserve(MassPairs *rows, PetscInt n)
 {
   PetscFunctionBeginUser;
   if (n <= rows->room) PetscFunctionReturn(0);
@@ -62,21 +62,24 @@ static PetscErrorCode Reserve(MassRows *rows, PetscInt n)
   PetscFunctionReturn(0);
 }
 
-/* The row of a node, at the end of what there is; `at` tells of each node where the newest row has it. */
+/* Half the row of a node, itself first, at the end of what there is; `at` tells of each node where the newest row has it. */
 static PetscErrorCode AddRow(const Discretisation *s, const Sharers *sharers, PetscInt node, PetscInt *at,
-                             MassRows *rows)
+                             MassPairs *rows)
 {
   const Support *w = s->support;
   const PetscInt begin = rows->start[node];
-  PetscInt end = begin;
+  PetscInt end = begin + 1;
   PetscReal row[CLOUD_MAX_NODES];
 
   PetscFunctionBeginUser;
+  PetscCall(Reserve(rows, end));
+  at[node] = begin;
+  rows->column[begin] = node, rows->entry[begin] = 0;
   for (PetscInt k = sharers->start[node]; k < sharers->start[node + 1]; ++k) {
     const PetscInt g = sharers->group[k], nn = support_nodes(w, g), *J = w->node + w->node_start[g];
     PetscCall(Reserve(rows, end + nn));
     row_of_group(s, g, sharers->place[k], row);
-    for (PetscInt j = 0; j < nn; ++j) {
+    for (PetscInt j = sharers->place[k]; j < nn; ++j) {
       if (row[j] == 0) continue;
       if (at[J[j]] < begin) {
         at[J[j]] = end;
@@ -89,32 +92,64 @@ static PetscErrorCode AddRow(const Discretisation *s, const Sharers *sharers, Pe
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ReserveNodes(MassRows *rows, PetscInt n)
-{
-  PetscFunctionBeginUser;
-  if (n <= rows->nodes && rows->start) PetscFunctionReturn(0);
-  rows->nodes = n;
-  PetscCall(PetscFree(rows->start));
-  PetscCall(PetscMalloc1(n + 1, &rows->start));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode MassRowsUpdate(const Discretisation *s, MassRows **rows)
+/* Half the rows. */
+static PetscErrorCode SumHalf(const Discretisation *s, MassPairs *half)
 {
   const PetscInt n = s->grid->n_nodes;
   Sharers sharers;
   PetscInt *at;
 
   PetscFunctionBeginUser;
-  if (!*rows) PetscCall(PetscNew(rows));
-  PetscCall(ReserveNodes(*rows, n));
-  (*rows)->start[0] = 0;
+  if (!half->start) PetscCall(PetscMalloc1(n + 1, &half->start));
+  half->start[0] = 0;
   PetscCall(PetscMalloc1(n, &at));
   for (PetscInt node = 0; node < n; ++node) at[node] = -1;
   PetscCall(SharersCreate(s->support, n, &sharers));
-  for (PetscInt node = 0; node < n; ++node) PetscCall(AddRow(s, &sharers, node, at, *rows));
+  for (PetscInt node = 0; node < n; ++node) PetscCall(AddRow(s, &sharers, node, at, half));
   PetscCall(SharersDestroy(&sharers));
   PetscCall(PetscFree(at));
+  PetscFunctionReturn(0);
+}
+
+static void put(MassPairs *whole, PetscInt k, PetscInt column, PetscReal entry)
+{
+  whole->column[k] = column;
+  whole->entry[k] = entry;
+}
+
+/* Each pair in the rows of both its nodes. */
+static PetscErrorCode Unfold(const MassPairs *half, PetscInt n, MassPairs *whole)
+{
+  PetscFunctionBeginUser;
+  if (!whole->start) PetscCall(PetscMalloc1(n + 2, &whole->start));
+  PetscCall(PetscArrayzero(whole->start, n + 2));
+  PetscInt *next = whole->start + 1; /* of a row: where its next entry goes; at last where it ends */
+  for (PetscInt node = 0; node < n; ++node)
+    for (PetscInt k = half->start[node]; k < half->start[node + 1]; ++k) {
+      if (node + 1 < n) next[node + 1] += 1;
+      if (k > half->start[node] && half->column[k] + 1 < n) next[half->column[k] + 1] += 1;
+    }
+  for (PetscInt node = 1; node < n; ++node) next[node] += next[node - 1];
+  PetscCall(Reserve(whole, 2 * half->start[n] - n));
+  for (PetscInt node = 0; node < n; ++node)
+    for (PetscInt k = half->start[node]; k < half->start[node + 1]; ++k) {
+      const PetscInt other = half->column[k];
+      put(whole, next[node]++, other, half->entry[k]);
+      if (other != node) put(whole, next[other]++, node, half->entry[k]);
+    }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MassRowsUpdate(const Discretisation *s, MassRows **rows)
+{
+  PetscFunctionBeginUser;
+  if (!*rows) PetscCall(PetscNew(rows));
+  PetscCall(SumHalf(s, &(*rows)->half));
+  PetscCall(Unfold(&(*rows)->half, s->grid->n_nodes, &(*rows)->whole));
+  if (mass_lines_work(s)) {
+    if (!(*rows)->lines) PetscCall(MassLinesCreate(s->grid, &(*rows)->lines));
+    PetscCall(MassLinesUpdate(s->grid, &(*rows)->half, (*rows)->lines));
+  }
   (*rows)->known = PETSC_TRUE;
   PetscFunctionReturn(0);
 }
@@ -124,13 +159,22 @@ void mass_rows_forget(MassRows *rows)
   if (rows) rows->known = PETSC_FALSE;
 }
 
+static PetscErrorCode Free(MassPairs *pairs)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(pairs->start));
+  PetscCall(PetscFree(pairs->column));
+  PetscCall(PetscFree(pairs->entry));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode MassRowsDestroy(MassRows **rows)
 {
   PetscFunctionBeginUser;
   if (!*rows) PetscFunctionReturn(0);
-  PetscCall(PetscFree((*rows)->start));
-  PetscCall(PetscFree((*rows)->column));
-  PetscCall(PetscFree((*rows)->entry));
+  PetscCall(MassLinesDestroy(&(*rows)->lines));
+  PetscCall(Free(&(*rows)->half));
+  PetscCall(Free(&(*rows)->whole));
   PetscCall(PetscFree(*rows));
   PetscFunctionReturn(0);
 }
@@ -138,7 +182,7 @@ PetscErrorCode MassRowsDestroy(MassRows **rows)
 /* By registers: the compiler would multiply number by number. */
 UNROLLED void multiply(const PetscInt width, const PetscInt parts, const MassSolve *c, const PetscReal *x)
 {
-  const MassRows *rows = c->rows;
+  const MassPairs *rows = &c->rows->whole;
   for (PetscInt i = 0; i < c->n_reached; ++i) {
     const PetscInt node = c->reached[i];
     Four sum[2] = {{0, 0, 0, 0}, {0, 0, 0, 0}};

@@ -1,6 +1,6 @@
 /* Conjugate gradients for two motions of the nodes at a time. */
+#include "method/transfer/lines.h"
 #include "method/transfer/loops.h"
-#include "method/transfer/mass.h"
 
 /* loop(dim, ...) with the dimension known to the compiler. */
 #define WITH_DIM(loop, dim, ...)          \
@@ -15,14 +15,15 @@ PetscErrorCode MassSolveAllocate(const Discretisation *s, MassMultiply multiply,
 
   PetscFunctionBeginUser;
   *c = (MassSolve){.s = s, .dim = dim, .width = width, .size = size, .multiply = multiply};
-  PetscCall(PetscCalloc5(size, &c->x, size, &c->lack, size, &c->inverse, size, &c->direction, size, &c->product));
+  PetscCall(PetscCalloc6(size, &c->x, size, &c->lack, size, &c->inverse, size, &c->direction, size, &c->product, size,
+                         &c->aim));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode MassSolveDestroy(MassSolve *c)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree5(c->x, c->lack, c->inverse, c->direction, c->product));
+  PetscCall(PetscFree6(c->x, c->lack, c->inverse, c->direction, c->product, c->aim));
   PetscCall(PetscFree(c->reached));
   if (!c->kept) PetscCall(MassRowsDestroy(&c->rows));
   PetscFunctionReturn(0);
@@ -85,14 +86,50 @@ PetscErrorCode MassLack(MassSolve *c, PetscReal square[MOTIONS])
   PetscFunctionReturn(0);
 }
 
-/* direction = lack over the diagonal + grow times itself. */
-UNROLLED void aim(const PetscInt dim, MassSolve *c, const PetscReal grow[MOTIONS])
+/* aim = lack over the diagonal + grow times itself. */
+UNROLLED void by_diagonal(const PetscInt dim, const MassSolve *c, const PetscReal grow[MOTIONS], PetscReal *aim)
 {
   for (PetscInt k = 0; k < c->n_reached_owned; ++k) {
     const PetscInt first = c->reached[k] * 2 * dim;
     for (PetscInt i = 0; i < 2 * dim; ++i)
-      c->direction[first + i] = c->inverse[first + i] * c->lack[first + i] + grow[i / dim] * c->direction[first + i];
+      aim[first + i] = c->inverse[first + i] * c->lack[first + i] + grow[i / dim] * aim[first + i];
   }
+}
+
+/* direction = aim + grow times itself. */
+UNROLLED void turn(const PetscInt dim, MassSolve *c, const PetscReal grow[MOTIONS])
+{
+  for (PetscInt k = 0; k < c->n_reached_owned; ++k) {
+    const PetscInt first = c->reached[k] * 2 * dim;
+    for (PetscInt i = 0; i < 2 * dim; ++i)
+      c->direction[first + i] = c->aim[first + i] + grow[i / dim] * c->direction[first + i];
+  }
+}
+
+static void growth(const PetscReal before[MOTIONS], const PetscReal gain[MOTIONS], PetscReal grow[MOTIONS])
+{
+  for (int f = 0; f < MOTIONS; ++f) grow[f] = before[f] > 0 ? gain[f] / before[f] : 0;
+}
+
+/* Where to go next, and how much is gained there: lack . aim; now: MassLack. */
+static PetscErrorCode Aim(MassSolve *c, const PetscReal now[MOTIONS], PetscReal gain[MOTIONS])
+{
+  const PetscReal before[MOTIONS] = {gain[0], gain[1]}, none[MOTIONS] = {0, 0};
+  PetscReal grow[MOTIONS];
+
+  PetscFunctionBeginUser;
+  if (!c->rows || !c->rows->lines) {
+    growth(before, now, grow);
+    PetscCall(PetscArraycpy(gain, now, MOTIONS));
+    WITH_DIM(by_diagonal, c->dim, c, grow, c->direction);
+    PetscFunctionReturn(0);
+  }
+  WITH_DIM(by_diagonal, c->dim, c, none, c->aim);
+  PetscCall(MassLinesAim(c, c->rows->lines, c->product, c->aim));
+  PetscCall(Products(c, c->lack, c->aim, NULL, gain));
+  growth(before, gain, grow);
+  WITH_DIM(turn, c->dim, c, grow);
+  PetscFunctionReturn(0);
 }
 
 UNROLLED void go(const PetscInt dim, MassSolve *c, const PetscReal length[MOTIONS])
@@ -107,38 +144,36 @@ UNROLLED void go(const PetscInt dim, MassSolve *c, const PetscReal length[MOTION
 }
 
 /* One sweep; lengths of 0 leave a motion alone. */
-static PetscErrorCode Sweep(MassSolve *c, const PetscBool done[MOTIONS], PetscReal now[MOTIONS],
-                            PetscReal grow[MOTIONS])
+static PetscErrorCode Sweep(MassSolve *c, const PetscBool done[MOTIONS], const PetscReal now[MOTIONS],
+                            PetscReal gain[MOTIONS])
 {
-  PetscReal curvature[MOTIONS], length[MOTIONS], before[MOTIONS];
+  PetscReal curvature[MOTIONS], length[MOTIONS];
 
   PetscFunctionBeginUser;
-  WITH_DIM(aim, c->dim, c, grow);
+  PetscCall(Aim(c, now, gain));
   PetscCall(GridToGhosts(c->s->grid, c->width, c->direction));
-  c->alone = done[ACCELERATION];
   PetscCall(c->multiply(c, c->direction));
-  c->alone = PETSC_FALSE;
   PetscCall(Products(c, c->direction, c->product, NULL, curvature));
-  for (int f = 0; f < MOTIONS; ++f) length[f] = !done[f] && curvature[f] > 0 ? now[f] / curvature[f] : 0;
+  for (int f = 0; f < MOTIONS; ++f) length[f] = !done[f] && curvature[f] > 0 ? gain[f] / curvature[f] : 0;
   WITH_DIM(go, c->dim, c, length);
-  PetscCall(PetscArraycpy(before, now, MOTIONS));
-  PetscCall(Products(c, c->lack, c->lack, c->inverse, now));
-  for (int f = 0; f < MOTIONS; ++f) grow[f] = before[f] > 0 ? now[f] / before[f] : 0;
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode MassSolveRun(MassSolve *c, const PetscReal enough[MOTIONS], int sweeps)
 {
-  PetscReal now[MOTIONS], grow[MOTIONS] = {0, 0};
+  PetscReal now[MOTIONS], gain[MOTIONS] = {0, 0};
   PetscBool done[MOTIONS];
 
   PetscFunctionBeginUser;
-  PetscCall(MassLack(c, now));
   mass_clear(c, c->direction);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
+    PetscCall(MassLack(c, now));
     for (int f = 0; f < MOTIONS; ++f) done[f] = now[f] <= enough[f];
     if (done[VELOCITY] && done[ACCELERATION]) break;
-    PetscCall(Sweep(c, done, now, grow));
+    if (sweep == 0 && c->prepare) PetscCall(c->prepare(c));
+    c->alone = done[ACCELERATION];
+    PetscCall(Sweep(c, done, now, gain));
+    c->alone = PETSC_FALSE;
   }
   PetscFunctionReturn(0);
 }
