@@ -30,9 +30,11 @@ typedef struct {
   CellType type;
   PetscInt dim;
   const PetscReal *x; /* nodes of the cell */
-  PetscInt owner;     /* whose part is measured; -1: pieces go to the nearest point of the rule */
-  PetscBool faces;    /* is the surface asked for? */
-  PetscReal slack;    /* m: corners on the surface shall be inside, whatever round-off says */
+  PetscBool straight; /* is it a rectangle along the axes, with this middle and half of these sides? */
+  PetscReal middle[3], half[3];
+  PetscInt owner;  /* whose part is measured; -1: pieces go to the nearest point of the rule */
+  PetscBool faces; /* is the surface asked for? */
+  PetscReal slack; /* m: corners on the surface shall be inside, whatever round-off says */
   Sum whole[SEED_MAX_RULE], fine[SEED_MAX_RULE], coarse[SEED_MAX_RULE]; /* coarse: edges twice as long */
 } Measure;
 
@@ -137,10 +139,44 @@ static PetscBool is_whole(const Measure *m, PetscInt q)
   return (PetscBool)(m->fine[q].volume >= (1 - NOTHING) * m->whole[q].volume);
 }
 
+/* Squares and cubes of a box need no shape functions: places are asked for by the thousand. */
+static void look_whether_straight(Measure *m)
+{
+  const Cell *cell = cells + m->type;
+  m->straight = PETSC_TRUE;
+  for (PetscInt d = 0; d < m->dim; ++d) {
+    PetscReal low = m->x[d], high = m->x[d];
+    for (PetscInt I = 1; I < cell->nodes; ++I) {
+      low = PetscMin(low, m->x[I * m->dim + d]);
+      high = PetscMax(high, m->x[I * m->dim + d]);
+    }
+    m->middle[d] = 0.5 * (low + high);
+    m->half[d] = 0.5 * (high - low);
+  }
+  for (PetscInt I = 0; I < cell->nodes; ++I)
+    for (PetscInt d = 0; d < m->dim; ++d)
+      m->straight &=
+        PetscAbsReal(m->middle[d] + cell->reference[I][d] * m->half[d] - m->x[I * m->dim + d]) <= m->slack ? 1 : 0;
+}
+
+static void place_at(const Measure *m, const PetscReal *xi, PetscReal *position)
+{
+  for (PetscInt d = 0; m->straight && d < m->dim; ++d) position[d] = m->middle[d] + xi[d] * m->half[d];
+  if (!m->straight) cell_position(m->type, m->x, xi, position);
+}
+
+/* det dx/dxi. */
+static PetscReal stretch_at(const Measure *m, const PetscReal *xi)
+{
+  PetscReal position[3], product = 1;
+  for (PetscInt d = 0; d < m->dim; ++d) product *= m->half[d];
+  return m->straight ? product : PetscAbsReal(cell_map(m->type, m->x, xi, position));
+}
+
 static PetscBool is_inside(const Measure *m, const PetscReal *xi)
 {
   PetscReal position[3];
-  cell_position(m->type, m->x, xi, position);
+  place_at(m, xi, position);
   return shape_contains(m->shape, m->dim, position, m->slack);
 }
 
@@ -155,15 +191,14 @@ static void centre_of(PetscInt dim, PetscReal corner[4][3], PetscReal *centre)
 /* Adds a simplex, or takes it away: sign. */
 static void add(const Measure *m, PetscReal corner[4][3], PetscReal sign, Sum *sum)
 {
-  PetscReal e[3][3] = {{0}, {0}, {0, 0, 1}}, centre[3] = {0, 0, 0}, position[3];
+  PetscReal e[3][3] = {{0}, {0}, {0, 0, 1}}, centre[3] = {0, 0, 0};
   for (PetscInt k = 0; k < m->dim; ++k)
     for (PetscInt d = 0; d < m->dim; ++d) e[k][d] = corner[k + 1][d] - corner[0][d];
   const PetscReal det = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
                         e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
                         e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
   centre_of(m->dim, corner, centre);
-  const PetscReal stretch = PetscAbsReal(cell_map(m->type, m->x, centre, position));
-  const PetscReal volume = sign * PetscAbsReal(det) / (m->dim == 2 ? 2 : 6) * stretch;
+  const PetscReal volume = sign * PetscAbsReal(det) / (m->dim == 2 ? 2 : 6) * stretch_at(m, centre);
   sum->volume += volume;
   for (PetscInt d = 0; d < m->dim; ++d) {
     PetscReal square = 0;
@@ -245,7 +280,7 @@ static PetscInt crossings(const Measure *m, const Simplex *s, PetscReal at[4][3]
       const PetscInt j = turn ? m->dim - k : k; /* back and forth: a quadrilateral's corners follow each other */
       if (s->inside[j]) continue;
       cross(m, s->xi[i], s->xi[j], xi);
-      cell_position(m->type, m->x, xi, at[n++]);
+      place_at(m, xi, at[n++]);
     }
     turn = !turn;
   }
@@ -258,7 +293,7 @@ static void add_face(const Measure *m, const Simplex *s, Sum *sum)
   PetscReal at[4][3] = {{0}}, out[3] = {0, 0, 0}, area[3] = {0, 0, 0}, position[3], along = 0;
   const PetscInt n = crossings(m, s, at);
   for (PetscInt i = 0; i <= m->dim; ++i) {
-    cell_position(m->type, m->x, s->xi[i], position);
+    place_at(m, s->xi[i], position);
     for (PetscInt d = 0; d < m->dim; ++d) out[d] += (s->inside[i] ? -1 : 1) * (position[d] - at[0][d]);
   }
   if (m->dim == 2) area[0] = at[1][1] - at[0][1], area[1] = at[0][0] - at[1][0];
@@ -425,6 +460,7 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
                .faces = s->faces};
   grid_cell_x(s->source, cell, x);
   m.slack = 1e-10 * PetscPowReal(cell_volume(m.type, x), 1 / (PetscReal)dim);
+  look_whether_straight(&m);
   if (is_simplex(m.type)) measure_simplex(&m);
   else measure_parts(&m);
   const PetscReal factor = growth(&m);
