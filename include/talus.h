@@ -445,7 +445,9 @@ int TalusModelArray(const TalusModel *model, const char *name, double **data, in
 /**
  * @brief Arrays of the points have been written: the nodes learn again from them. Collective.
  *
- * Before the first step of a dynamic case accelerations are found anew, whatever was written.
+ * Before the first step of a dynamic case accelerations are found anew, whatever was written. Gradients of the
+ * velocity that points carry beside it (`transfer: consistent` with linear functions, explicit dynamics) stay what
+ * they are: what a new field turns by or strains within a cell is not in them.
  */
 int TalusModelChanged(TalusModel *model);
 

@@ -69,7 +69,8 @@ class Points(Mapping):
         """Change an array of the model in a `with`; at its end the nodes learn of it. Collective.
 
         These may be changed: velocity and acceleration where points carry the motion (mpm), state with any
-        method. The model's energies do not count what that gives or takes.
+        method. The model's energies do not count what that gives or takes. Gradients of the velocity that points
+        carry beside it (`transfer: consistent` with linear functions, explicit dynamics) stay what they are.
 
         >>> with talus.Case(block).model() as model:
         ...     with model.points.edit("velocity") as v:
