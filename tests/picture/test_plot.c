@@ -440,7 +440,7 @@ static void test_several_states(void **state)
   (void)state;
   TestFolder(folder);
   for (int k = 0; k < 4; ++k) WriteState(folder, 2, k, 0.5 * k);
-  PlotOptions options = {.run = folder, .up = 2, .n_times = 3, .times = {0, 0.5, 1.5}};
+  PlotOptions options = {.run = folder, .width = 600, .up = 2, .n_times = 3, .times = {0, 0.5, 1.5}};
   char *text = Plot(&options, picture);
   assert_string_equal(text, "");
   assert_non_null(strstr(picture, "/pictures/states_displacement_magnitude.png"));
@@ -451,7 +451,7 @@ static void test_several_states(void **state)
   assert_string_equal(text, "");
   assert_true(CheckPng(picture, &tall_width, &tall_height) > 10000 && tall_height > tall_width);
   free(text);
-  options = (PlotOptions){.run = folder, .up = 2, .all_times = PETSC_TRUE};
+  options = (PlotOptions){.run = folder, .width = 600, .up = 2, .all_times = PETSC_TRUE};
   text = Plot(&options, picture);
   assert_string_equal(text, "");
   assert_true(CheckPng(picture, &width, &height) > 10000);
@@ -467,7 +467,7 @@ static void test_state_in_space(void **state)
   TestFolder(folder);
   WriteState(folder, 3, 0, 0);
   for (PetscInt up = 0; up < 3; ++up) {
-    const PlotOptions options = {.run = folder, .component = "x", .up = up};
+    const PlotOptions options = {.run = folder, .component = "x", .width = 500, .height = 450, .up = up};
     char *text = Plot(&options, picture);
     assert_string_equal(text, "");
     assert_true(CheckPng(picture, &width, &height) > 20000);
@@ -729,7 +729,7 @@ static void test_names_and_cells(void **state)
   assert_int_equal(VtkWrite(PETSC_COMM_WORLD, path, &grid, reason), 0);
   check_cells(folder);
   for (int k = 0; k < 2; ++k) {
-    const PlotOptions options = {.run = folder, .field = "body", .up = -1, .format = "svg", .grid = k};
+    const PlotOptions options = {.run = folder, .field = "body", .width = 400, .up = -1, .format = "svg", .grid = k};
     char *text = Plot(&options, picture);
     assert_string_equal(text, "");
     char *svg = TestRead(folder, "pictures/state_body_000000.svg");
@@ -741,7 +741,7 @@ static void test_names_and_cells(void **state)
   /* without a case, numbers */
   snprintf(path, sizeof path, "%s/case.yaml", folder);
   assert_int_equal(remove(path), 0);
-  const PlotOptions options = {.run = folder, .field = "body", .up = -1, .format = "svg"};
+  const PlotOptions options = {.run = folder, .field = "body", .width = 400, .up = -1, .format = "svg"};
   char *text = Plot(&options, picture), *svg = TestRead(folder, "pictures/state_body_000000.svg");
   assert_true(strstr(svg, "body 1") && !strstr(svg, "wood"));
   free(svg);
