@@ -59,7 +59,7 @@ static void tell(const char *what, const Bench *b, const Course *c)
 
 /* A block pressed on a smooth floor by its weight (5 kPa at its foot) slides at 1/37 of a cell a
  * step over the faces of more than five cells. */
-static void slide(CellType cell, PetscBool stabilised)
+static void slide(CellType cell)
 {
   Bench b;
   const PetscReal size = 0.125, dt = 0.01, v[3] = {size / 37 / dt, 0, 0};
@@ -71,7 +71,6 @@ static void slide(CellType cell, PetscBool stabilised)
   b.body[0].velocity[0] = v[0];
   b.c.gravity[1] = -9.81;
   b.c.gravity_amplitude = (Amplitude){.n = 2, .time = (PetscReal[]){0, 0.5}, .value = (PetscReal[]){0, 1}};
-  if (!stabilised) b.c.stabilisation = (StabilisationSpec){0};
   bench_motion(&b, 1, 0, MOTION_FIXED, 2);
   if (b.c.kinematics == &kinematics_3d) {
     bench_motion(&b, 2, 0, MOTION_FIXED, 4);
@@ -79,7 +78,6 @@ static void slide(CellType cell, PetscBool stabilised)
   }
   const Course c = run(&b, v, 200);
   tell("sliding block", &b, &c);
-  if (!stabilised) return; /* for the record: none of these needs it */
   CHECK(c.finished && c.cuts == 0 && c.most_iterations <= 4, "the block stumbles");
   CHECK(c.stress < 1e4, "stress %g Pa", (double)c.stress);
   /* the foot starts to sag: a slow swing */
@@ -89,14 +87,13 @@ static void slide(CellType cell, PetscBool stabilised)
 static void test_slide(void **state)
 {
   (void)state;
-  for (CellType cell = CELL_TRIANGLE; cell <= CELL_QUADRILATERAL; ++cell)
-    for (int stabilised = 1; stabilised >= 0; --stabilised) slide(cell, (PetscBool)stabilised);
-  slide(CELL_HEXAHEDRON, PETSC_TRUE);
+  for (CellType cell = CELL_TRIANGLE; cell <= CELL_QUADRILATERAL; ++cell) slide(cell);
+  slide(CELL_HEXAHEDRON);
 }
 
 /* A block carried sideways on its clamped foot, statics: the nodes that it leaves behind and those
  * that it enters hold slivers. */
-static void creep(CellType cell, PetscInt points_per_cell, PetscReal step, PetscBool stabilised)
+static void creep(CellType cell, PetscInt points_per_cell, PetscReal step)
 {
   Bench b;
   const PetscReal size = 0.125, v[3] = {0, 0, 0};
@@ -108,13 +105,11 @@ static void creep(CellType cell, PetscInt points_per_cell, PetscReal step, Petsc
   b.c.analysis = (AnalysisSpec){.type = ANALYSIS_STATIC, .end = 200, .step = 1, .smallest = 1. / 64, .largest = 1};
   b.c.gravity[1] = -9.81;
   b.c.gravity_amplitude = (Amplitude){.n = 2, .time = (PetscReal[]){0, 10}, .value = (PetscReal[]){0, 1}};
-  if (!stabilised) b.c.stabilisation = (StabilisationSpec){0};
   MotionSpec *foot = bench_motion(&b, 1, 0, MOTION_VELOCITY, 3);
   foot->value[0] = size * step;
   const Course c = run(&b, v, (PetscInt)(200. / 37 / step));
   PetscPrintf(PETSC_COMM_WORLD, "%d points a cell, %g cells a step: ", (int)points_per_cell, (double)step);
   tell("creeping block", &b, &c);
-  if (!stabilised) return; /* for the record: none of these needs it */
   CHECK(c.finished && c.cuts == 0, "the block stumbles");
   CHECK(c.most_iterations <= (cell == CELL_TRIANGLE && points_per_cell == 1 ? 20 : 4), "%d iterations",
         (int)c.most_iterations);
@@ -124,13 +119,11 @@ static void creep(CellType cell, PetscInt points_per_cell, PetscReal step, Petsc
 static void test_creep(void **state)
 {
   (void)state;
-  for (CellType cell = CELL_TRIANGLE; cell <= CELL_QUADRILATERAL; ++cell)
-    for (int stabilised = 1; stabilised >= 0; --stabilised) {
-      creep(cell, cell == CELL_TRIANGLE ? 3 : 4, 1. / 37, (PetscBool)stabilised);
-      creep(cell, cell == CELL_TRIANGLE ? 3 : 4, 0.5 - 0.5 / PetscSqrtReal(3),
-            (PetscBool)stabilised); /* Gauss points land on faces */
-      creep(cell, 1, 1. / 37, (PetscBool)stabilised);
-    }
+  for (CellType cell = CELL_TRIANGLE; cell <= CELL_QUADRILATERAL; ++cell) {
+    creep(cell, cell == CELL_TRIANGLE ? 3 : 4, 1. / 37);
+    creep(cell, cell == CELL_TRIANGLE ? 3 : 4, 0.5 - 0.5 / PetscSqrtReal(3)); /* Gauss points land on faces */
+    creep(cell, 1, 1. / 37);
+  }
 }
 
 /* Points alone in their cells, each on a course of its own: most points of a block are taken away,
