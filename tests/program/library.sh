@@ -109,6 +109,12 @@ basis: {cell: {}}
 END
 }
 
+# The same block lower and faster, in half of the time.
+quick_block() {
+  block | sed 's/end: 0.4/end: 0.2/; s/\[1.5, -1\]/[3, -1]/; s/min: \[0.5, 0.5\], max: \[1.5, 1\]/min: [0.5, 0.3], max: [1.5, 0.8]/
+    s/spin_centre: \[1, 0.75\]/spin_centre: [1, 0.55]/; s/tracer: \[1.5, 1\]/tracer: [1.5, 0.8]/'
+}
+
 # plate STEPS: plate.geo, meshed by gmsh with regions and boundaries by their names, and a case.yaml that pulls it in so many steps.
 plate() {
   cat >plate.geo <<'END'

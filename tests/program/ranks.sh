@@ -25,14 +25,14 @@ same "cantilever, fem"
 awk -v a="$tip" -v b="$(tail -n 1 run1/history.csv | cut -d, -f3)" 'BEGIN { exit !(a < -0.1 && b / a > 0.8 && b / a < 1.25) }' ||
   fail "mpm and fem are far apart"
 
-block >case.yaml
+quick_block >case.yaml
 same "bouncing block"
 # Points did cross from rank to rank: the ranks share the block's first place, and it flew half its length further.
 awk -F, 'NR > 1 && $3 > 1.9 { flew = 1 } NR > 1 && $10 > 1e4 { hit = 1 } END { exit !(flew && hit) }' run1/history.csv ||
   fail "the block did not fly and bounce"
 
 # The functions of a case that names none reach farther than its cells, over to other ranks; where Newton stops is not told apart from that
-block | sed 's/^basis:.*/newton: {residual: 1e-12}/; s/, transfer: thesis//' >case.yaml
+quick_block | sed 's/^basis:.*/newton: {residual: 1e-12}/; s/, transfer: thesis//' >case.yaml
 same "bouncing block, default basis"
 says run3/log.txt "basis = gimp, the default of mpm" "transfer = consistent, the default"
 

@@ -3,7 +3,7 @@
 # others. Damaged checkpoints are passed over, and what makes no sense is refused.
 compare="$(cd "$(dirname "$0")" && pwd)/compare.awk"
 . "$(dirname "$0")/library.sh"
-block | sed 's/every: 0.1/every: 0.02/' >block.yaml
+quick_block | sed 's/every: 0.1/every: 0.02/' >block.yaml
 often="--set checkpoint.steps=30 --set checkpoint.keep=100"
 
 # forget DIR STEP: as if the run had died just before the first checkpoint after this step.
@@ -25,9 +25,9 @@ same_bits() {
 # The same bits: dynamics of mpm on 1, 2, 3 ranks, with states and rows after the checkpoint that are replaced
 for ranks in 1 2 3; do
   expect "whole on $ranks" 0 on_ranks $ranks "$talus" run block.yaml --out whole$ranks --quiet $often
-  cp -r whole$ranks cut && forget cut 97
+  cp -r whole$ranks cut && forget cut 67
   expect "resumed on $ranks" 0 on_ranks $ranks "$talus" run --resume cut --quiet
-  says cut/log.txt "resumed = step 90 time = 0.18 ranks = $ranks"
+  says cut/log.txt "resumed = step 60 time = 0.12 ranks = $ranks"
   same_bits "$name" whole$ranks cut
   rm -r cut
 done
@@ -35,7 +35,7 @@ done
 # Another number of ranks
 for from in 1 2 3; do
   to=$((from % 3 + 1))
-  cp -r whole$from cut && forget cut 97
+  cp -r whole$from cut && forget cut 67
   expect "from $from to $to ranks" 0 on_ranks $to "$talus" run --resume cut --quiet
   says cut/log.txt "ranks = $to"
   says cut/version.txt "ranks = $to"

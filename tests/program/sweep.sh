@@ -45,7 +45,7 @@ says err.txt "1 of 2 members did not come to their end"
 says up/sweep.csv ",done," ",gave up,"
 
 # Interrupted members go on to the same bits; members do not outlive the sweep
-block | sed 's/end: 0.4/end: 3/' >block.yaml
+block | sed 's/end: 0.4/end: 1.2/' >block.yaml
 sweep_block() { "$talus" sweep block.yaml --over materials.rubber.young=2e5,3e5 --measure low:min --measure corner:mean:0:0.2 --jobs 2 --out b; }
 wait_for_rows() {
   for i in $(seq 400); do
