@@ -39,13 +39,13 @@ static void volumes(const Model *m, PetscReal *ratio, PetscReal *centre)
 static void lifted(const char *method, PetscReal memory, PetscReal *opened, PetscReal *ratio, PetscReal *centre)
 {
   static PetscReal time[] = {0.03, 0.0301}, up[] = {-1, 1};
-  const PetscReal h = 0.01;
+  const PetscReal h = 0.01, end = ranks_of_world() > 1 ? 0.2 : 0.3; /* mpm has come to rest earlier than fem */
   PetscReal unused;
   Bench b;
   sand(&b, method, 2 * h, 20 * h, h, memory);
   bench_box(&b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){2 * h, 10 * h, 0});
   b.body[0].points_per_cell = 4;
-  bench_dynamic(&b, 0.3, 1e-4);
+  bench_dynamic(&b, end, 1e-4);
   b.c.analysis.damping = 20;
   bench_motion(&b, 1, 0, MOTION_FIXED, 2);
   bench_motion(&b, 0, 0, MOTION_FIXED, 1);
@@ -55,7 +55,7 @@ static void lifted(const char *method, PetscReal memory, PetscReal *opened, Pets
   Model *m = bench_model(&b, PETSC_COMM_WORLD);
   while (m->time < 0.03 - 1e-9) model_step(m, 0.03 - m->time);
   volumes(m, opened, &unused);
-  while (m->time < 0.3 - 1e-9) model_step(m, 0.3 - m->time);
+  while (m->time < end - 1e-9) model_step(m, end - m->time);
   volumes(m, ratio, centre);
   CALL(ModelDestroy(&m));
 }
