@@ -206,7 +206,7 @@ static void write_axes(FILE *out, const Figure *figure, const PetscReal *min, co
   fputs(
     "set border lw 1 lc rgb '#444444'\nset tics textcolor rgb '#000000'\n"
     "set grid xtics ytics lc rgb '#e2e2e2' lw 1 lt 1\nset tics nomirror\n"
-    "set key Left reverse samplen 2 spacing 1.2 width 0 box lc rgb '#cccccc' opaque\n",
+    "set key Left reverse samplen 2 spacing 1.2 width 1 box lc rgb '#cccccc' opaque\n",
     out);
   write_key(out, figure, min, max);
 }
