@@ -6,14 +6,12 @@
 
 static void find_places(const GridBox *box, PetscInt (*place)[3])
 {
-  const VoxelBlock *all = &box->nodes;
-  const PetscInt nx = all->hi[0] - all->lo[0], ny = all->hi[1] - all->lo[1];
-  for (PetscInt k = 0; k < block_size(all); ++k) {
-    PetscInt *at = place[box->lattice[k]];
-    at[0] = all->lo[0] + k % nx;
-    at[1] = all->lo[1] + k / nx % ny;
-    at[2] = all->lo[2] + k / (nx * ny);
-  }
+  const PetscInt *lo = box->nodes.lo, *hi = box->nodes.hi, *node = box->lattice;
+  PetscInt at[3];
+  for (at[2] = lo[2]; at[2] < hi[2]; ++at[2])
+    for (at[1] = lo[1]; at[1] < hi[1]; ++at[1])
+      for (at[0] = lo[0]; at[0] < hi[0]; ++at[0], ++node)
+        for (int d = 0; d < 3; ++d) place[*node][d] = at[d];
 }
 
 static PetscErrorCode ExtensionCreate(const Discretisation *s, Extension **extension)

@@ -118,9 +118,8 @@ PetscErrorCode MassLinesAim(MassSolve *c, const MassLines *lines, PetscReal *spa
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < 2 * dim; ++k) {
     const PetscInt axis = PetscMin(k, 2 * dim - 1 - k);
-    const PetscReal *in = k % 2 ? spare : aim;
-    PetscReal *out = k % 2 ? aim : spare;
-    PetscCall(GridToGhosts(grid, c->width, k % 2 ? spare : aim));
+    PetscReal *in = k % 2 ? spare : aim, *out = k % 2 ? aim : spare;
+    PetscCall(GridToGhosts(grid, c->width, in));
     if (c->width == 4) step_along(4, 1, c, lines, axis, in, out);
     else if (c->alone) step_along(6, 1, c, lines, axis, in, out);
     else step_along(6, 2, c, lines, axis, in, out);

@@ -62,7 +62,8 @@ static PetscErrorCode Reserve(MassPairs *rows, PetscInt n)
   PetscFunctionReturn(0);
 }
 
-/* Half the row of a node, itself first, at the end of what there is; `at` tells of each node where the newest row has it. */
+/* Half the row of a node, itself first, at the end of what there is; `at` tells of each node where the newest row has
+ * it. */
 static PetscErrorCode AddRow(const Discretisation *s, const Sharers *sharers, PetscInt node, PetscInt *at,
                              MassPairs *rows)
 {
@@ -121,8 +122,8 @@ static void put(MassPairs *whole, PetscInt k, PetscInt column, PetscReal entry)
 static PetscErrorCode Unfold(const MassPairs *half, PetscInt n, MassPairs *whole)
 {
   PetscFunctionBeginUser;
-  if (!whole->start) PetscCall(PetscMalloc1(n + 2, &whole->start));
-  PetscCall(PetscArrayzero(whole->start, n + 2));
+  if (!whole->start) PetscCall(PetscMalloc1(n + 1, &whole->start));
+  PetscCall(PetscArrayzero(whole->start, n + 1));
   PetscInt *next = whole->start + 1; /* of a row: where its next entry goes; at last where it ends */
   for (PetscInt node = 0; node < n; ++node)
     for (PetscInt k = half->start[node]; k < half->start[node + 1]; ++k) {

@@ -5,8 +5,6 @@
 
 enum { LOOK = 5, LOOK_TETRAHEDRON = 8 }; /* samples along an axis: is the cell cut? */
 #define WITHIN 1e-3                      /* of the cell: so far inside its sides a surface along them cuts nothing */
-#define NOTHING 1e-6                     /* of a cell */
-#define SLIVER 0.1                       /* of what a point has in a whole cell: less joins its neighbour */
 
 /* Halvings of a cell's simplices: so many before they are believed to lie on one side, the sides
  * of a square or cube then being eighths or quarters, and so many at most; halvings of an edge
@@ -78,65 +76,9 @@ static PetscInt nearest_of(const SeedRule *rule, PetscInt dim, const PetscReal *
   return nearest;
 }
 
-static PetscBool is_sliver(const SeedPart *part, PetscInt n)
-{
-  return (PetscBool)(part->share > 0 && part->share < SLIVER / (PetscReal)n);
-}
-
-static PetscReal square_between(const SeedPart *a, const SeedPart *b, PetscInt dim)
-{
-  PetscReal square = 0;
-  for (PetscInt d = 0; d < dim; ++d) square += PetscSqr(a->xi[d] - b->xi[d]);
-  return square;
-}
-
-/* Parts that are no slivers and have their middles nearest to that of this one, all that are as near; returns how
- * many. */
-static PetscInt neighbours_of(const SeedPart *part, PetscInt n, PetscInt dim, PetscInt of, PetscInt *near)
-{
-  PetscReal least = PETSC_MAX_REAL;
-  PetscInt n_near = 0;
-  for (PetscInt q = 0; q < n; ++q)
-    if (part[q].share > 0 && !is_sliver(part + q, n)) least = PetscMin(least, square_between(part + q, part + of, dim));
-  for (PetscInt q = 0; q < n; ++q)
-    if (part[q].share > 0 && !is_sliver(part + q, n) && square_between(part + q, part + of, dim) < least + NOTHING)
-      near[n_near++] = q;
-  return n_near;
-}
-
-/* A share of what `from` was before it goes to `to`, with its moment. */
-static void give(const SeedPart *from, PetscReal share, PetscInt dim, SeedPart *to)
-{
-  const PetscReal volume = share * from->share, sum = to->share + volume, a = to->share / sum, b = volume / sum;
-  for (PetscInt d = 0; d < dim; ++d) {
-    to->spread[d] = a * to->spread[d] + b * from->spread[d] + a * b * PetscSqr(to->xi[d] - from->xi[d]);
-    to->face[d] += share * from->face[d];
-    to->xi[d] = (to->share * to->xi[d] + volume * from->xi[d]) / sum;
-  }
-  to->share = sum;
-  to->whole = PETSC_FALSE;
-}
-
-/* Points that are next to nothing go to those beside them, or, where a cell has no others, are one: whatever comes
- * first, so that a body and its image in a mirror have the same points. */
-static void join_slivers(SeedPart *part, PetscInt n, PetscInt dim)
-{
-  SeedPart before[SEED_MAX_RULE];
-  PetscInt near[SEED_MAX_RULE], first = -1;
-  for (PetscInt q = 0; q < n; ++q) before[q] = part[q];
-  for (PetscInt q = 0; q < n; ++q) {
-    if (!is_sliver(before + q, n)) continue;
-    const PetscInt n_near = neighbours_of(before, n, dim, q, near);
-    for (PetscInt k = 0; k < n_near; ++k) give(before + q, 1 / (PetscReal)n_near, dim, part + near[k]);
-    if (!n_near && first >= 0) give(before + q, 1, dim, part + first);
-    if (n_near || first >= 0) part[q].share = 0;
-    else first = q;
-  }
-}
-
 static PetscBool is_whole(const Measure *m, PetscInt q)
 {
-  return (PetscBool)(m->fine[q].volume >= (1 - NOTHING) * m->whole[q].volume);
+  return (PetscBool)(m->fine[q].volume >= (1 - SEED_NOTHING) * m->whole[q].volume);
 }
 
 /* Squares and cubes of a box need no shape functions: places are asked for by the thousand. */
@@ -368,8 +310,8 @@ static PetscInt find_lines(const Measure *m, PetscReal line[MOST_LINES])
   PetscInt n = 0;
   for (PetscInt q = 0; q < m->rule->n; ++q) {
     PetscInt k = n;
-    while (k > 0 && at[k - 1] > m->rule->xi[q * m->dim] - NOTHING) --k;
-    if (k < n && at[k] < m->rule->xi[q * m->dim] + NOTHING) continue;
+    while (k > 0 && at[k - 1] > m->rule->xi[q * m->dim] - SEED_NOTHING) --k;
+    if (k < n && at[k] < m->rule->xi[q * m->dim] + SEED_NOTHING) continue;
     for (PetscInt i = n++; i > k; --i) at[i] = at[i - 1];
     at[k] = m->rule->xi[q * m->dim];
   }
@@ -468,7 +410,7 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
   for (PetscInt q = 0; q < rule->n; ++q) {
     const Sum *sum = m.fine + q;
     part[q] = (SeedPart){.share = (is_whole(&m, q) ? 1 : factor) * sum->volume / whole, .whole = is_whole(&m, q)};
-    if (part[q].share < NOTHING) part[q].share = 0;
+    if (part[q].share < SEED_NOTHING) part[q].share = 0;
     inside += part[q].share;
     for (PetscInt d = 0; d < dim; ++d) part[q].face[d] = sum->face[d];
     for (PetscInt d = 0; d < dim && part[q].share > 0; ++d) {
@@ -476,6 +418,6 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
       part[q].spread[d] = PetscMax(0, sum->second[d] / sum->volume - PetscSqr(part[q].xi[d]));
     }
   }
-  join_slivers(part, rule->n, dim);
-  return inside <= 0 ? SEED_NONE : inside >= 1 - NOTHING ? SEED_WHOLE : SEED_CUT;
+  seed_join_slivers(part, rule->n, dim);
+  return inside <= 0 ? SEED_NONE : inside >= 1 - SEED_NOTHING ? SEED_WHOLE : SEED_CUT;
 }

@@ -3,6 +3,7 @@
 #include "points/points.h"
 
 #define SEED_MAX_RULE 64
+#define SEED_NOTHING 1e-6 /* of a cell */
 
 /* Where points stand in a cell. */
 typedef struct {
@@ -52,6 +53,10 @@ SeedFill seed_fill(const Seeding *s, PetscInt cell);
 /* Parts of a cell, one for each point of the rule; those without a share have no point. Once
  * measured, the cell may turn out to be whole, or empty. */
 SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedPart *part);
+
+/* slivers.c. Points that are next to nothing go to those beside them, or, where a cell has no others, are one: whatever
+ * comes first, so that a body and its image in a mirror have the same points. */
+void seed_join_slivers(SeedPart *part, PetscInt n, PetscInt dim);
 
 /* Half lengths l of the domain of a point at xi, in a cell with nodes at x whose lattice has `side`
  * points a direction; 0: it stands for this part of the section, or of the volume in space. */

@@ -1,0 +1,57 @@
+#include "points/seed/seed.h"
+
+#define SLIVER 0.1 /* of what a point has in a whole cell: less joins its neighbour */
+
+static PetscBool is_sliver(const SeedPart *part, PetscInt n)
+{
+  return (PetscBool)(part->share > 0 && part->share < SLIVER / (PetscReal)n);
+}
+
+static PetscReal square_between(const SeedPart *a, const SeedPart *b, PetscInt dim)
+{
+  PetscReal square = 0;
+  for (PetscInt d = 0; d < dim; ++d) square += PetscSqr(a->xi[d] - b->xi[d]);
+  return square;
+}
+
+/* Parts that are no slivers and have their middles nearest to that of this one, all that are as near; returns how
+ * many. */
+static PetscInt neighbours_of(const SeedPart *part, PetscInt n, PetscInt dim, PetscInt of, PetscInt *near)
+{
+  PetscReal least = PETSC_MAX_REAL;
+  PetscInt n_near = 0;
+  for (PetscInt q = 0; q < n; ++q)
+    if (part[q].share > 0 && !is_sliver(part + q, n)) least = PetscMin(least, square_between(part + q, part + of, dim));
+  for (PetscInt q = 0; q < n; ++q)
+    if (part[q].share > 0 && !is_sliver(part + q, n) && square_between(part + q, part + of, dim) < least + SEED_NOTHING)
+      near[n_near++] = q;
+  return n_near;
+}
+
+/* A share of what `from` was before it goes to `to`, with its moment. */
+static void give(const SeedPart *from, PetscReal share, PetscInt dim, SeedPart *to)
+{
+  const PetscReal volume = share * from->share, sum = to->share + volume, a = to->share / sum, b = volume / sum;
+  for (PetscInt d = 0; d < dim; ++d) {
+    to->spread[d] = a * to->spread[d] + b * from->spread[d] + a * b * PetscSqr(to->xi[d] - from->xi[d]);
+    to->face[d] += share * from->face[d];
+    to->xi[d] = (to->share * to->xi[d] + volume * from->xi[d]) / sum;
+  }
+  to->share = sum;
+  to->whole = PETSC_FALSE;
+}
+
+void seed_join_slivers(SeedPart *part, PetscInt n, PetscInt dim)
+{
+  SeedPart before[SEED_MAX_RULE];
+  PetscInt near[SEED_MAX_RULE], first = -1;
+  for (PetscInt q = 0; q < n; ++q) before[q] = part[q];
+  for (PetscInt q = 0; q < n; ++q) {
+    if (!is_sliver(before + q, n)) continue;
+    const PetscInt n_near = neighbours_of(before, n, dim, q, near);
+    for (PetscInt k = 0; k < n_near; ++k) give(before + q, 1 / (PetscReal)n_near, dim, part + near[k]);
+    if (!n_near && first >= 0) give(before + q, 1, dim, part + first);
+    if (n_near || first >= 0) part[q].share = 0;
+    else first = q;
+  }
+}
