@@ -1,7 +1,7 @@
 /* What averaged functions and splines cost in space beside linear ones, on the same cells: a ball that hits a
  * floor, and a beam that statics bends.
  *
- *   build/bench/bench_bases [-repeat 3] [-case FILE]
+ *   build/bench/bench_bases [-repeat 3] [-case FILE] [-transfer consistent]
  *
  * The bases take turns in one run and the best of several rounds counts, in seconds that a core worked for this
  * process; ratios are to linear functions. Nodes, blocks: what a point sees, and pairs in half a tangent. */
@@ -18,12 +18,14 @@ typedef struct {
 
 static PetscErrorCode Begin(const char *file, const char *basis, Diag *diag, Case **c, Model **m)
 {
-  char text[32];
-  const char *const set[] = {text};
+  char text[32], name[32] = "", transfer[64];
+  const char *const set[] = {text, transfer};
 
   PetscFunctionBeginUser;
+  PetscCall(PetscOptionsGetString(NULL, NULL, "-transfer", name, sizeof name, NULL));
   snprintf(text, sizeof text, "basis={%s: {}}", basis);
-  PetscCall(CaseRead(PETSC_COMM_WORLD, file, 1, set, diag, c));
+  snprintf(transfer, sizeof transfer, "analysis.transfer=%s", name);
+  PetscCall(CaseRead(PETSC_COMM_WORLD, file, name[0] ? 2 : 1, set, diag, c));
   *m = NULL;
   if (*c) PetscCall(ModelCreate(PETSC_COMM_WORLD, *c, diag, m));
   if (!*m) PetscCall(DiagFlush(diag, stderr));

@@ -42,6 +42,7 @@ title "a rolling disk: gmm beside mpm, cells of 0.04 m and steps of 4 ms, then 0
 
 title "bases in space: a ball, a beam"
 "$bench/bench_bases" -repeat 2
+"$bench/bench_bases" -repeat 2 -case bench/bases-ball.yaml -transfer consistent
 
 title "statics"
 "$bench/bench_static"
