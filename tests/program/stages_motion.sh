@@ -75,6 +75,28 @@ done
 expect "and is reset" 0 "$talus" run falls.yaml --out falls --force --quiet --set 'stages[1]={name: reset, reset: [velocity], analysis: {type: dynamic, end: 0.001, step: 1e-3}}' --set 'loads={gravity: [0, 0]}'
 awk -F, '$3 == 2 { exit !($4 * $4 < 0.0025) }' falls/history.csv || fail "$name: $(grep ',2,' falls/history.csv)"
 
+# What falls has the way of gravity alone, to the last digits, in whatever stage that begins: one from rest, and one in which it grows.
+cat >drop.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, end: 0.04, step: 0.01}
+grid: {box: {min: [0, -4], max: [2, 2]}, size: 0.25}
+bodies: [{name: block, shape: {box: {min: [0.5, 0.5], max: [1.5, 1.5]}}, points_per_cell: 4, material: rubber, velocity: [0, 1]}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+measures: {way: {displacement: y, of: {tracer: [1, 1]}}}
+stages:
+  - name: flies
+  - {name: falls, reset: [displacement, velocity], analysis: {end: 0.1}, loads: {gravity: [0, -10]}}
+  - {name: faster, analysis: {end: 0.1}, loads: {gravity: [0, -20]}}
+END
+for ranks in 1 2 3; do
+  for scheme in "method=mpm" "basis={gimp: {}}" "analysis.transfer=thesis" "method=fem"; do
+    expect "a jump of gravity, $scheme on $ranks" 0 on_ranks $ranks "$talus" run drop.yaml --out drop --force --quiet --set "$scheme"
+    awk -F, 'function off(a, b) { return (a - b) * (a - b) > 1e-18 } $3 == 2 { fell = $4 } $3 == 3 { way = $4 }
+      END { exit off(fell, -0.05) || off(way, -0.25) }' drop/history.csv || fail "$name: $(tail -n 1 drop/history.csv)"
+  done
+done
+
 # What the state before the first step was like is so in later stages, too, and in a run that is resumed in one of them.
 cat >given.yaml <<'END'
 kinematics: plane-strain

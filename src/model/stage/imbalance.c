@@ -124,3 +124,43 @@ PetscErrorCode ResetMotion(Model *m, const Case *from, PetscBool next, PetscReal
   PetscCall(PetscArrayzero(n->rate, dofs));
   PetscFunctionReturn(0);
 }
+
+/* Gravity that changes at once accelerates all that is free at once: what moves would else lack half a step of it. */
+static PetscErrorCode FeelGravity(Model *m, const PetscReal more[3])
+{
+  NodalFields *n = m->nodes;
+  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
+  PetscReal *jump, *points = m->points->real[POINT_A];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < m->points->n * dim; ++i) points[i] += more[i % dim];
+  PetscCall(PetscMalloc1(dofs, &jump));
+  for (PetscInt i = 0; i < dofs; ++i) jump[i] = more[i % dim];
+  frames_turn(&m->boundary->frames, dim, jump);
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i)
+    if (m->boundary->fixed[i] || m->nodes->fixed[i]) jump[i] = 0;
+  frames_turn(&m->boundary->frames, dim, jump);
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) n->a[i] += jump[i];
+  PetscCall(PetscFree(jump));
+  PetscCall(GridToGhosts(m->grid, dim, n->a));
+  PetscCall(PetscArraycpy(n->a_points, n->a, dofs));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BeginAcceleration(Model *m, const Case *from, PetscBool next)
+{
+  PetscReal before[3], now[3], change = 0;
+
+  PetscFunctionBeginUser;
+  if (!m->scheme->inertia) PetscFunctionReturn(0);
+  if (case_is_static(&from->analysis) || (m->c->spec && m->c->spec->reset.velocity)) {
+    PetscCall(InitialAcceleration(m));
+    PetscFunctionReturn(0);
+  }
+  if (!next || m->c->release > 0) PetscFunctionReturn(0); /* what is new comes bit by bit */
+  gravity_at(from, m->time, before);
+  gravity_at(m->c, m->time, now);
+  for (int d = 0; d < 3; ++d) now[d] -= before[d], change += PetscAbsReal(now[d]);
+  if (change > 0) PetscCall(FeelGravity(m, now));
+  PetscFunctionReturn(0);
+}

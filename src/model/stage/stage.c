@@ -175,7 +175,7 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   PetscCall(HoldImbalance(m, from, imbalance));
-  if (m->scheme->inertia && case_is_static(&from->analysis)) PetscCall(InitialAcceleration(m));
+  PetscCall(BeginAcceleration(m, from, next));
   PetscFunctionReturn(0);
 }
 

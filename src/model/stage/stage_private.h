@@ -42,5 +42,7 @@ PetscBool material_as_stiff(const Material *a, const Material *b);
 PetscBool point_swap(Points *points, PetscInt p, const Material *was, const Material *is);
 /* Collective. Velocities end where the case says so, or where they mean nothing: in statics. */
 PetscErrorCode ResetMotion(Model *model, const Case *from, PetscBool next, PetscReal *taken);
+/* Collective. Accelerations of the balance where nothing moves; else what a jump of gravity makes of those that go on. */
+PetscErrorCode BeginAcceleration(Model *model, const Case *from, PetscBool next);
 /* Collective. What is out of balance now; where the case releases it over time, it is held. */
 PetscErrorCode HoldImbalance(Model *model, const Case *from, Imbalance *imbalance);
