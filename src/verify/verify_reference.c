@@ -236,6 +236,8 @@ static const SchemaEntry course_entries[] = {
   KEY("constant", NUMBER, NULL, "at t = 0", .fallback = "0", AT(CourseSpec, constant)),
   KEY("linear", NUMBER, NULL, "times t", .fallback = "0", AT(CourseSpec, linear)),
   KEY("quadratic", NUMBER, NULL, "times t^2", .fallback = "0", AT(CourseSpec, quadratic)),
+  KEY("start", NUMBER, NULL, "t counts from here, s; what is before does not count", .fallback = "0", AT_LEAST(0),
+      AT(CourseSpec, start)),
   KEY("every", NUMBER, NULL, "compare at multiples of this time, s; 0: at every row of the history", .fallback = "0",
       AT_LEAST(0), AT(CourseSpec, every)),
   KEY("factor", NUMBER, NULL, "times the distance", .fallback = "1", AT(CourseSpec, factor)),

@@ -78,9 +78,9 @@ typedef struct {
 } SweepSpec;
 
 /* A course in time, constant + linear t + quadratic t^2, from which the history of a measure is
- * compared: at its rows or, if every > 0, at multiples of that time. */
+ * compared: at its rows or, if every > 0, at multiples of that time. t counts from `start`. */
 typedef struct {
-  PetscReal constant, linear, quadratic, every, factor;
+  PetscReal constant, linear, quadratic, start, every, factor;
 } CourseSpec;
 
 typedef enum {

@@ -16,22 +16,24 @@ static PetscReal moment(const History *history, PetscInt column, PetscReal t)
   return NAN;
 }
 
+/* t: since the course began. */
 static PetscReal off_course(const CourseSpec *course, PetscReal t, PetscReal value)
 {
   return value - (course->constant + t * (course->linear + t * course->quadratic));
 }
 
-/* Root of the sum of squared distances, over all rows after the start, or at the times that the
+/* Root of the sum of squared distances, over all rows after the course's start, or at the times that the
  * course names. */
 static PetscReal distance(const History *history, PetscInt column, const CourseSpec *course)
 {
   const PetscReal end = history->n_rows ? history->values[(history->n_rows - 1) * history->n_columns] : 0;
-  const PetscInt n = course->every > 0 ? (PetscInt)(end / course->every + 1e-6) : history->n_rows;
+  const PetscReal span = end - course->start;
+  const PetscInt n = course->every > 0 ? (PetscInt)(span / course->every + 1e-6) : history->n_rows;
   PetscReal sum = 0;
   for (PetscInt i = 0; i < n; ++i) {
     const PetscReal *row = history->values + i * history->n_columns;
-    const PetscReal t = course->every > 0 ? PetscMin((i + 1) * course->every, end) : row[0];
-    const PetscReal value = course->every > 0 ? moment(history, column, t) : row[column];
+    const PetscReal t = course->every > 0 ? PetscMin((i + 1) * course->every, span) : row[0] - course->start;
+    const PetscReal value = course->every > 0 ? moment(history, column, course->start + t) : row[column];
     if (t > 0) sum += PetscSqr(off_course(course, t, value));
   }
   return course->factor * PetscSqrtReal(sum);
