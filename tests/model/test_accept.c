@@ -156,9 +156,9 @@ static void test_leap(void **state)
   }
 }
 
-/* A step in which the block is drawn out to four times its length is one of rubber, and of sand in statics, but none of
- * sand that moves. */
-static void test_flows(void **state)
+/* A step in which the block is drawn out to four times its length is one of statics, for rubber and for sand, but none
+ * of what moves in time. */
+static void test_in_time(void **state)
 {
   static NamedValue grains[4] = {{"young", 1e5}, {"poisson", 0.3}, {"friction_angle", 30}, {"cohesion", 1e3}};
   (void)state;
@@ -175,8 +175,8 @@ static void test_flows(void **state)
     CALL(ModelInitialise(m));
     for (PetscInt i = 0; i < m->grid->n_nodes * 2; ++i) m->nodes->du[i] = i % 2 ? 3 * m->grid->x[i] : 0;
     CALL(JudgeStep(m, &report));
-    CHECK(report.newton.converged == !(yields && moves), "law %d, dynamics %d", yields, moves);
-    if (yields && moves) assert_non_null(strstr(report.newton.reason, "stretched 4 times in one step"));
+    CHECK(report.newton.converged == !moves, "law %d, dynamics %d", yields, moves);
+    if (moves) assert_non_null(strstr(report.newton.reason, "stretched 4 times in one step"));
     CALL(ModelDestroy(&m));
   }
 }
@@ -185,6 +185,6 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_held), cmocka_unit_test(test_hinge),
                                      cmocka_unit_test(test_useless_solver), cmocka_unit_test(test_leap),
-                                     cmocka_unit_test(test_flows)};
+                                     cmocka_unit_test(test_in_time)};
   return run_model_tests(argc, argv, tests);
 }

@@ -6,22 +6,17 @@
 #include "base/math/tensor.h"
 #include "model/model_private.h"
 
-/* in one step, or to that part: a soft column under its weight may be pressed to an eighth; flows
- * stay below 1.5 */
+/* in one step, or to that part: a soft column under its weight may be pressed to an eighth; what
+ * moves in time stays below 1.5 */
 #define MOST_STRETCH 10
-#define MOST_STRETCH_OF_FLOWS 3
+#define MOST_STRETCH_IN_TIME 3
 /* of a cell: nothing can be stretched that much */
 #define HARDLY_MOVED 0.2
-#define HARDLY_MOVED_OF_FLOWS 0.1
-
-static PetscBool flows(const Model *m)
-{
-  return m->scheme->inertia && materials_yield(m->c->n_materials, m->materials);
-}
+#define HARDLY_MOVED_IN_TIME 0.1
 
 static PetscReal least_motion(const Model *m)
 {
-  return (flows(m) ? HARDLY_MOVED_OF_FLOWS : HARDLY_MOVED) * m->grid->smallest;
+  return (m->scheme->inertia ? HARDLY_MOVED_IN_TIME : HARDLY_MOVED) * m->grid->smallest;
 }
 
 static PetscReal square_norm(const PetscReal a[9])
@@ -99,7 +94,7 @@ PetscErrorCode JudgeStep(const Model *m, StepReport *report)
     }
   }
   PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->comm));
-  if (worst.stretch <= (flows(m) ? MOST_STRETCH_OF_FLOWS : MOST_STRETCH)) PetscFunctionReturn(0);
+  if (worst.stretch <= (m->scheme->inertia ? MOST_STRETCH_IN_TIME : MOST_STRETCH)) PetscFunctionReturn(0);
   for (PetscInt d = 0; d < m->dim && rank == worst.rank; ++d) x[d] = point_real(m->points, POINT_X, at)[d];
   PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, worst.rank, m->comm));
   snprintf(report->leap, sizeof report->leap,
