@@ -1,4 +1,4 @@
-/* The balance at the start of a stage: what of it is held, and how accelerations begin. */
+/* The balance at the start of a stage: what of it is held. */
 #include "model/stage/stage_private.h"
 #include "solve/forces/release.h"
 
@@ -77,6 +77,14 @@ static PetscErrorCode HoldReactions(const Model *m, const Case *from, const Pets
   PetscFunctionReturn(0);
 }
 
+void keep_free(const Model *m, PetscReal *values)
+{
+  frames_turn(&m->boundary->frames, m->dim, values);
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i)
+    if (i >= m->grid->n_owned * m->dim || m->boundary->fixed[i] || m->nodes->fixed[i]) values[i] = 0;
+  frames_turn(&m->boundary->frames, m->dim, values);
+}
+
 PetscErrorCode HoldImbalance(Model *m, const Case *from, Imbalance *imbalance)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
@@ -89,78 +97,11 @@ PetscErrorCode HoldImbalance(Model *m, const Case *from, Imbalance *imbalance)
   PetscCall(Residual(m, residual));
   PetscCall(PetscMalloc1(dofs, &lacks));
   PetscCall(PetscArraycpy(lacks, residual, dofs));
-  frames_turn(&m->boundary->frames, m->dim, residual);
-  for (PetscInt i = 0; i < dofs; ++i)
-    if (i >= m->grid->n_owned * m->dim || m->boundary->fixed[i] || m->nodes->fixed[i]) residual[i] = 0;
-  frames_turn(&m->boundary->frames, m->dim, residual);
+  keep_free(m, residual);
   PetscCall(Report(m, residual, imbalance));
   if (held) PetscCall(PetscArraycpy(held, residual, dofs));
   if (held) PetscCall(HoldReactions(m, from, lacks, held));
   PetscCall(PetscFree(lacks));
   PetscCall(PetscFree(residual));
-  PetscFunctionReturn(0);
-}
-
-/* Where the state before had no inertia, accelerations are those of the balance. */
-PetscErrorCode ResetMotion(Model *m, const Case *from, PetscBool next, PetscReal *taken)
-{
-  const ResetSpec reset = m->c->spec ? m->c->spec->reset : (ResetSpec){0};
-  const PetscBool stands = !m->scheme->inertia || reset.velocity, anew = reset.displacement || !next;
-  NodalFields *n = m->nodes;
-  const PetscInt dofs = m->grid->n_nodes * m->dim, numbers = m->points->n * m->dim;
-
-  PetscFunctionBeginUser;
-  if (anew) PetscCall(PetscArrayzero(m->points->real[POINT_U], numbers));
-  if (anew) PetscCall(PetscArrayzero(m->tracers->real[POINT_U], m->tracers->n * m->dim));
-  if (stands && !m->method->restores_grid) PetscCall(PetscArrayzero(n->v, dofs));
-  if (stands) PetscCall(PetscArrayzero(m->points->real[POINT_V], numbers));
-  *taken = stands ? rigid_halt(m, from) : 0;
-  if (!stands && !case_is_static(&from->analysis)) PetscFunctionReturn(0);
-  if (m->points->components[POINT_SLOPE])
-    PetscCall(PetscArrayzero(m->points->real[POINT_SLOPE], m->points->n * m->points->components[POINT_SLOPE]));
-  PetscCall(PetscArrayzero(m->points->real[POINT_A], numbers));
-  PetscCall(PetscArrayzero(n->a, dofs));
-  PetscCall(PetscArrayzero(n->echo, dofs));
-  PetscCall(PetscArrayzero(n->rate, dofs));
-  PetscFunctionReturn(0);
-}
-
-/* Gravity that changes at once accelerates all that is free at once: what moves would else lack half a step of it. */
-static PetscErrorCode FeelGravity(Model *m, const PetscReal more[3])
-{
-  NodalFields *n = m->nodes;
-  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
-  PetscReal *jump, *points = m->points->real[POINT_A];
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < m->points->n * dim; ++i) points[i] += more[i % dim];
-  PetscCall(PetscMalloc1(dofs, &jump));
-  for (PetscInt i = 0; i < dofs; ++i) jump[i] = more[i % dim];
-  frames_turn(&m->boundary->frames, dim, jump);
-  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i)
-    if (m->boundary->fixed[i] || m->nodes->fixed[i]) jump[i] = 0;
-  frames_turn(&m->boundary->frames, dim, jump);
-  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) n->a[i] += jump[i];
-  PetscCall(PetscFree(jump));
-  PetscCall(GridToGhosts(m->grid, dim, n->a));
-  PetscCall(PetscArraycpy(n->a_points, n->a, dofs));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode BeginAcceleration(Model *m, const Case *from, PetscBool next)
-{
-  PetscReal before[3], now[3], change = 0;
-
-  PetscFunctionBeginUser;
-  if (!m->scheme->inertia) PetscFunctionReturn(0);
-  if (case_is_static(&from->analysis) || (m->c->spec && m->c->spec->reset.velocity)) {
-    PetscCall(InitialAcceleration(m));
-    PetscFunctionReturn(0);
-  }
-  if (!next || m->c->release > 0) PetscFunctionReturn(0); /* what is new comes bit by bit */
-  gravity_at(from, m->time, before);
-  gravity_at(m->c, m->time, now);
-  for (int d = 0; d < 3; ++d) now[d] -= before[d], change += PetscAbsReal(now[d]);
-  if (change > 0) PetscCall(FeelGravity(m, now));
   PetscFunctionReturn(0);
 }

@@ -42,7 +42,9 @@ PetscBool material_as_stiff(const Material *a, const Material *b);
 PetscBool point_swap(Points *points, PetscInt p, const Material *was, const Material *is);
 /* Collective. Velocities end where the case says so, or where they mean nothing: in statics. */
 PetscErrorCode ResetMotion(Model *model, const Case *from, PetscBool next, PetscReal *taken);
-/* Collective. Accelerations of the balance where nothing moves; else what a jump of gravity makes of those that go on. */
+/* Collective. Accelerations of the balance where nothing moves; those that go on get the jump of gravity. */
 PetscErrorCode BeginAcceleration(Model *model, const Case *from, PetscBool next);
+/* Of values of all nodes, those of this rank's nodes that no boundary holds; the others become 0. */
+void keep_free(const Model *model, PetscReal *values);
 /* Collective. What is out of balance now; where the case releases it over time, it is held. */
 PetscErrorCode HoldImbalance(Model *model, const Case *from, Imbalance *imbalance);
