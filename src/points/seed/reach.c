@@ -30,6 +30,19 @@ static PetscBool is_next_to(const Cell *cell, PetscInt side, const SeedRule *rul
   return distance_to_side(cell, side, x, rule->xi + q * cell->dim) < NEXT * nearest;
 }
 
+/* The narrowest way through the part of a cell that one of its points stands for. */
+static PetscReal narrowest(const Cell *cell, const PetscReal *x, const SeedRule *rule)
+{
+  PetscReal least = PETSC_MAX_REAL;
+  for (PetscInt side = 0; side < cell->faces; ++side) {
+    PetscReal most = 0;
+    for (PetscInt i = 0; i < cell->nodes; ++i)
+      most = PetscMax(most, distance_to_side(cell, side, x, x + i * cell->dim));
+    least = PetscMin(least, most);
+  }
+  return least / (PetscReal)rule->side;
+}
+
 PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section,
                      const SeedRule *rule, PetscInt q, const unsigned char *outer)
 {
@@ -42,7 +55,7 @@ PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *positio
     reach = PetscMin(reach, distance);
     if (outer[side] && is_next_to(cell, side, rule, q)) surface = PetscMin(surface, distance);
   }
-  if (!simplex && surface < PETSC_MAX_REAL) return PetscMin(surface, half);
+  if (!simplex && surface < PETSC_MAX_REAL) return PetscMin(surface, narrowest(cell, x, rule));
   return surface < PETSC_MAX_REAL ? surface : reach;
 }
 

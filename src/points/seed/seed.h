@@ -65,9 +65,9 @@ void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscIn
 
 /* Distance of the q-th point of the rule, at `position` in a cell with nodes at x, from the
  * body's surface: of points next to sides that are `outer` (faces of the cell) the nearest of
- * these, where beside a far side of a flat cell is not as near to its others. Of others that from the nearest side. Of
- * both, but in a simplex of these alone, at most half the side of a square or cube of its part of the section, or of
- * the volume in space. */
+ * these, but (in no simplex) not more than its part of the cell is wide: beside a far side of a flat cell it is not as
+ * near to others. Of points inside that from the nearest side, at most half the side of a square or cube of its part of
+ * the section, or of the volume in space. */
 PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section,
                      const SeedRule *rule, PetscInt q, const unsigned char *outer);
 

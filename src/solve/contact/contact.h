@@ -123,10 +123,11 @@ PetscErrorCode ContactFind(Contact *contact, const NodalScene *scene);
 void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia, ContactShare share);
 /* Forget what impulses have done in a step, or in a try of it that has failed: a try begins. */
 void contact_again(Contact *contact);
-/* How far the surface is from a point at a distance `gap` from the wall, as the last step has left it, m: a spring of
- * explicit dynamics that held it is gone, and it stands where it stood; what pulled it, too, where it is bonded. 0: not
- * known. */
-PetscReal contact_kept_reach(const NodalScene *scene, ContactKind kind, const PetscReal *kept, PetscReal gap);
+/* How far the surface is from point p at a distance `gap` from the wall, as the last step has left it, m: a spring of
+ * explicit dynamics that held it is gone, and it stands where it stood; what pulled it, too, where it is bonded. What
+ * an elastic body rolls towards the wall is as far ahead as it has come to be; what nothing is known of, as strain has it. */
+PetscReal contact_reach_left(const NodalScene *scene, PetscInt p, ContactKind kind, const PetscReal *kept,
+                             const PetscReal n[3], PetscReal gap);
 /* What else the room finds: contact points with nodes, and the surface of a part of a body. */
 PetscErrorCode ContactAdd(Contact *contact, ContactPoint **c);
 PetscErrorCode ContactAddNodes(Contact *contact, ContactPoint *c, PetscInt n);
@@ -156,6 +157,8 @@ PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n
 /* Of the surface of its body that material point p was given (POINT_FACE) what looks at a wall with the normal n now,
  * as large as it was at the start, m2 (in rings m); 0: none. */
 PetscReal contact_face(const Points *points, PetscInt p, const PetscReal n[3]);
+/* Has the square of an edge's length, or the cosine of an angle, at point p changed by `limit` since the start? */
+PetscBool contact_is_strained(const Points *points, PetscInt p, PetscReal limit);
 /* Position of a contact point with the field's increments, times `whole`. */
 void contact_place(const Contact *contact, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3]);
 

@@ -75,8 +75,8 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
   PetscFunctionBeginUser;
   PetscCall(ContactAdd(s, &c));
   c->owner = p->owner, c->wall = partner;
-  const PetscReal held = contact_kept_reach(scene, scene->c->interfaces[interface].contact, kept, pair->gap);
-  c->reach = held > 0 ? held : contact_reach(p->F, pair->normal, p->first, p->corner, 2);
+  c->reach =
+    contact_reach_left(scene, p->owner, scene->c->interfaces[interface].contact, kept, pair->normal, pair->gap);
   c->modulus[0] = p->modulus, c->density[0] = p->density;
   c->stiffer = PetscMax(p->stiffer, pair->other->stiffer);
   c->modulus[1] = pair->other->modulus, c->density[1] = pair->other->density;

@@ -7,6 +7,9 @@
 
 #define TOUCHES 1e-6
 
+/* strain up to which what may yield moves as a body */
+#define STIFF 0.02
+
 /* Thickness of the material point's part of the body towards n: planes of the undeformed body along
  * its surface, of which those r apart are r |F^T n| apart now; or as far as the place on that which it stands
  * beside. */
@@ -181,11 +184,22 @@ static PetscBool meets_body(const Case *c, PetscInt k, PetscInt body)
   return !w->n_bodies;
 }
 
-PetscReal contact_kept_reach(const NodalScene *scene, ContactKind kind, const PetscReal *kept, PetscReal gap)
+/* May the surface have turned since, with nothing that presses on it? What has flowed has others now. */
+static PetscBool turns(const NodalScene *scene, PetscInt p, PetscReal state)
+{
+  if (state > CONTACT_OPEN + 2 * CONTACT_SPRING) return PETSC_FALSE;
+  return (PetscBool)(!scene->materials[scene->points->material[p]].law->yields ||
+                     !contact_is_strained(scene->points, p, STIFF));
+}
+
+PetscReal contact_reach_left(const NodalScene *scene, PetscInt p, ContactKind kind, const PetscReal *kept,
+                             const PetscReal n[3], PetscReal gap)
 {
   const PetscBool sprung = contact_is_sprung(kept[0]) && scene->c->analysis.type != ANALYSIS_EXPLICIT;
-  if (!sprung) return kept[1];
-  return kind == CONTACT_BONDED ? gap : PetscMin(kept[1], gap);
+  const PetscReal held = kind == CONTACT_BONDED || !sprung ? kept[1] : PetscMin(kept[1], gap);
+  if (held <= 0) return contact_reach_of(scene->points, p, n);
+  if (kind == CONTACT_BONDED && sprung) return gap;
+  return turns(scene, p, kept[0]) ? PetscMax(held, contact_reach_of(scene->points, p, n)) : held;
 }
 
 /* What the functions of the point are `reach` beyond it along -n, more than N there; means over a domain become those
@@ -219,8 +233,8 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   PetscFunctionBeginUser;
   if (!meets_body(scene->c, k, points->body[p])) PetscFunctionReturn(0);
   if (!wall_near(s->walls, k, scene->t, x, s->near + contact_farthest(points, p), side, &place)) PetscFunctionReturn(0);
-  const PetscReal held = contact_kept_reach(scene, scene->c->walls[k].contact, kept + k * CONTACT_KEPT(dim), place.gap),
-                  reach = held > 0 ? held : contact_reach_of(points, p, place.normal);
+  const PetscReal reach =
+    contact_reach_left(scene, p, scene->c->walls[k].contact, kept + k * CONTACT_KEPT(dim), place.normal, place.gap);
   const PetscInt nn = support_nodes(scene->support, g), *node = scene->support->node + scene->support->node_start[g];
   const PetscReal *N = support_N(scene->support, g, at), *dN = support_dN(scene->support, g, at, dim);
   PetscCall(ContactAdd(s, &c));

@@ -45,12 +45,9 @@ PetscReal contact_face(const Points *points, PetscInt p, const PetscReal n[3])
   return PetscMax(0, along / PetscSqrtReal(length));
 }
 
-/* Has its matter flowed? Then nobody knows where a surface looks that it had. */
-static PetscBool is_torn(const NodalScene *scene, PetscInt p)
+PetscBool contact_is_strained(const Points *points, PetscInt p, PetscReal limit)
 {
-  const Points *points = scene->points;
   PetscReal F[9], most = 0;
-  if (!scene->passes || !scene->materials[points->material[p]].law->yields) return PETSC_FALSE;
   point_F(points, p, F);
   for (int i = 0; i < 3; ++i)
     for (int j = i; j < 3; ++j) {
@@ -58,7 +55,14 @@ static PetscBool is_torn(const NodalScene *scene, PetscInt p)
       for (int k = 0; k < 3; ++k) C += F[3 * k + i] * F[3 * k + j];
       most = PetscMax(most, PetscAbsReal(C));
     }
-  return (PetscBool)(most >= TORN);
+  return (PetscBool)(most >= limit);
+}
+
+/* Has its matter flowed? Then nobody knows where a surface looks that it had. */
+static PetscBool is_torn(const NodalScene *scene, PetscInt p)
+{
+  return (PetscBool)(scene->passes && scene->materials[scene->points->material[p]].law->yields &&
+                     contact_is_strained(scene->points, p, TORN));
 }
 
 /* Was the point given some of its body's surface? */
