@@ -32,3 +32,12 @@ endif()
 include(CheckLinkerFlag)
 check_linker_flag(C -fuse-ld=gold TALUS_HAS_GOLD)
 set(TALUS_TEST_LINKER $<$<BOOL:${TALUS_HAS_GOLD}>:-fuse-ld=gold>)
+
+# Programs wait for other ranks in their own way, which MPI's libraries must see.
+check_linker_flag(C -Wl,--export-dynamic-symbol=sched_yield TALUS_HAS_EXPORTS)
+add_library(talus_yield OBJECT src/cli/yield.c)
+target_link_libraries(talus_yield PRIVATE talus_flags)
+function(talus_yields target)
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:talus_yield>)
+  target_link_options(${target} PRIVATE $<$<BOOL:${TALUS_HAS_EXPORTS}>:-Wl,--export-dynamic-symbol=sched_yield>)
+endfunction()

@@ -134,6 +134,7 @@ function(talus_test path)
   endforeach()
   target_link_libraries(${target} PRIVATE talus_flags PkgConfig::CMOCKA)
   target_link_options(${target} PRIVATE ${TALUS_TEST_LINKER})
+  talus_yields(${target})
   # What a test itself does takes longer to compile than to run; but those of the ground floor try what its headers inline.
   if(NOT room STREQUAL "base")
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
