@@ -32,6 +32,14 @@ class Callbacks:
         except BaseException as error:  # KeyboardInterrupt, too
             self._raised = self._raised or error
 
+    def _fill(self, numbers, function):
+        """Let a function fill what C gave; with no numbers once something was raised, so that no step is taken."""
+        if self._raised is None:
+            with self._kept():
+                function(numbers)
+        if self._raised is not None:
+            numbers[:] = np.nan
+
     def raise_kept(self):
         """Raise what a function has raised meanwhile."""
         error, self._raised = self._raised, None
@@ -44,10 +52,11 @@ class Callbacks:
             return self._types["TalusBodyForces"]()
 
         def ask(_, n, X, x, t, b):
-            with self._kept():
-                wanted = _view(b, n)
+            def force_of(wanted):
                 force = _numbers("body_force", function(_view(X, n), _view(x, n), t))
                 wanted[:, :force.shape[-1] if force.ndim else 3] = force
+
+            self._fill(_view(b, n), force_of)
 
         return self._types["TalusBodyForces"](ask)
 
@@ -57,12 +66,13 @@ class Callbacks:
             return self._types["TalusLoadFactors"]()
 
         def ask(_, n, X, x, t, f):
-            with self._kept():
-                wanted = _view(f, n)
+            def factor_of(wanted):
                 factor = _numbers("a load", function(_view(X, n), _view(x, n), t))
                 if factor.ndim == 1 and factor.shape == (n,):
                     factor = factor[:, None]  # a number for each place, not for each component
                 wanted[:, :factor.shape[-1] if factor.ndim and factor.shape[-1] > 1 else 3] = factor
+
+            self._fill(_view(f, n), factor_of)
 
         return self._types["TalusLoadFactors"](ask)
 

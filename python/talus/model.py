@@ -224,7 +224,8 @@ class Model:
         """One step, halved until Newton's method converges; returns False if the end was reached before.
 
         `limit` [s] is the longest step to take, even beyond the end of the case; 0: as the case's step control
-        chooses, up to its end. RunError: no step converged (the model is as it was), or points were lost.
+        chooses, up to its end. RunError: no step converged (the model is as it was), or points were lost. What a
+        function of a force raises is raised here: no step is taken (of explicit ones a part is, and no other after it).
         Collective.
         """
         lib, step = library(), ctypes.c_int()

@@ -196,6 +196,22 @@ class Running(InFolder):
             case.run("raised-force")
         self.assertLessEqual(talus.open("raised-force").summary["steps"], 1)
 
+    def test_no_step_is_taken_with_a_force_that_raises(self):
+        def fail(X, x, t):
+            if t > 1e-3:
+                raise ZeroDivisionError("no force")
+            return 0
+
+        with block().model() as model:
+            model.body_force = fail
+            with self.assertRaisesRegex(ZeroDivisionError, "no force"):
+                model.step()
+            self.assertEqual(model.time, 0)
+            self.assertEqual(abs(model.points["displacement"]).max(), 0)
+            model.body_force = None
+            self.assertTrue(model.step())
+            self.assertGreater(model.time, 0)
+
     def test_body_force_is_gravity(self):
         light = block(**{"loads.gravity": [0, 0]})
         light.body_force = lambda X, x, t: np.tile([0, -9.81, 0], (len(X), 1))
