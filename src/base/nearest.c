@@ -2,7 +2,8 @@
 #include <ctype.h>
 #include <string.h>
 
-#define LONGEST 64 /* words beyond this are never near each other */
+#define LONGEST 64    /* words beyond this are never near each other */
+#define LEAST_ALIKE 4 /* letters at the beginning of words that are kin */
 
 static int plain(char c) { return c == '_' ? '-' : tolower((unsigned char)c); }
 
@@ -31,21 +32,43 @@ static int nearest_distance(const char *a, const char *b)
   return last[m];
 }
 
+/* How many letters two words begin with alike. */
+static size_t nearest_alike(const char *a, const char *b)
+{
+  size_t n = 0;
+  while (a[n] && plain(a[n]) == plain(b[n])) ++n;
+  return n;
+}
+
+/* The word that begins as this one does for more than half of it: friction_angle of friction. */
+static const char *nearest_kin(const char *word, const char *const *words)
+{
+  const char *best = NULL;
+  size_t most = PetscMax(LEAST_ALIKE - 1, strlen(word) / 2);
+  for (; *words; ++words) {
+    const size_t alike = nearest_alike(word, *words);
+    if (alike <= most) continue;
+    most = alike;
+    best = *words;
+  }
+  return best;
+}
+
 const char *diag_nearest(const char *word, const char *const *words)
 {
   const char *best = NULL;
   const size_t length = word ? strlen(word) : 0;
   int least = 1 + (int)(length + 1) / 3;
   if (length == 0 || length > LONGEST) return NULL;
-  for (; *words; ++words) {
-    if (strlen(*words) > LONGEST) continue;
-    const int distance = nearest_distance(word, *words);
+  for (const char *const *w = words; *w; ++w) {
+    if (strlen(*w) > LONGEST) continue;
+    const int distance = nearest_distance(word, *w);
     if (distance < least) {
       least = distance;
-      best = *words;
+      best = *w;
     }
   }
-  return best;
+  return best ? best : nearest_kin(word, words);
 }
 
 void diag_hint_names(Diag *diag, const char *word, const char *const *words)

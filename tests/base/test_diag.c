@@ -177,6 +177,9 @@ static void Nearest(void **state)
   assert_string_equal(diag_nearest("Poisson", words), "poisson");
   assert_string_equal(diag_nearest("points-per-cell", words), "points_per_cell");
   assert_string_equal(diag_nearest("point_per_cells", words), "points_per_cell");
+  assert_string_equal(diag_nearest("points", words), "points_per_cell");
+  assert_string_equal(diag_nearest("keep_it", words), "keep-on-boundary");
+  assert_null(diag_nearest("pointless_and_otherwise", words)); /* less than half */
   assert_null(diag_nearest("density", words));
   assert_null(diag_nearest("", words));
   memset(huge, 'x', sizeof(huge));

@@ -55,8 +55,8 @@ PetscErrorCode DiagReduce(MPI_Comm comm, Diag *diag, PetscInt *errors);
  * first rank of the newest DiagReduce prints (before any: the first of all), others forget. */
 PetscErrorCode DiagFlush(Diag *diag, FILE *out);
 
-/* The word of a NULL-terminated list nearest to `word` (Damerau-Levenshtein), NULL if none is
- * near. */
+/* The word of a NULL-terminated list nearest to `word` (Damerau-Levenshtein); if none is near, one that begins as it
+ * does; NULL if none does. */
 const char *diag_nearest(const char *word, const char *const *words);
 /* Under the newest message: "did you mean 'right'? There are: left, right, ...". */
 void diag_hint_names(Diag *diag, const char *word, const char *const *words);
