@@ -33,6 +33,14 @@ PetscReal contact_reach_of(const Points *points, PetscInt p, const PetscReal n[3
   return contact_reach(F, n, points->real[POINT_REACH][p], point_real(points, POINT_CORNER, p), points->dim);
 }
 
+/* How far ahead the side, edge or corner is that the point stands beside. */
+static PetscReal ahead_of(const Points *points, PetscInt p, const PetscReal n[3])
+{
+  PetscReal F[9];
+  point_F(points, p, F);
+  return contact_reach(F, n, 0, point_real(points, POINT_CORNER, p), points->dim);
+}
+
 /* Nothing has sheared yet. */
 void contact_take_back(Points *points, PetscInt p, const PetscReal n[3], PetscReal reach)
 {
@@ -199,7 +207,8 @@ PetscReal contact_reach_left(const NodalScene *scene, PetscInt p, ContactKind ki
   const PetscReal held = kind == CONTACT_BONDED || !sprung ? kept[1] : PetscMin(kept[1], gap);
   if (held <= 0) return contact_reach_of(scene->points, p, n);
   if (kind == CONTACT_BONDED && sprung) return gap;
-  return turns(scene, p, kept[0]) ? PetscMax(held, contact_reach_of(scene->points, p, n)) : held;
+  if (!turns(scene, p, kept[0])) return held;
+  return PetscMax(held, PetscMin(gap, ahead_of(scene->points, p, n)));
 }
 
 /* What the functions of the point are `reach` beyond it along -n, more than N there; means over a domain become those
