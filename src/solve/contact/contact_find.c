@@ -7,6 +7,8 @@
 
 #define TOUCHES 1e-6
 
+#define ROUND_OFF 1e-9
+
 /* strain up to which what may yield moves as a body */
 #define STIFF 0.02
 
@@ -33,10 +35,12 @@ PetscReal contact_reach_of(const Points *points, PetscInt p, const PetscReal n[3
   return contact_reach(F, n, points->real[POINT_REACH][p], point_real(points, POINT_CORNER, p), points->dim);
 }
 
-/* How far ahead the side, edge or corner is that the point stands beside. */
+/* How far ahead the corner is that the point stands beside, or a side that is farther than the point is thick; 0: the
+ * point knows of none. */
 static PetscReal ahead_of(const Points *points, PetscInt p, const PetscReal n[3])
 {
   PetscReal F[9];
+  if (contact_farthest(points, p) <= (1 + ROUND_OFF) * THICKEST * points->real[POINT_REACH][p]) return 0;
   point_F(points, p, F);
   return contact_reach(F, n, 0, point_real(points, POINT_CORNER, p), points->dim);
 }
