@@ -1,4 +1,4 @@
-/* Who waits for other ranks here yields as talus does (src/cli/yield.c): the libraries of MPI find that before libc's. */
+/* Who waits for other ranks here yields as talus does (src/cli/yield.c): MPI's libraries find that before libc's. */
 #include <dlfcn.h>
 #include <sched.h>
 #include <setjmp.h>

@@ -124,8 +124,8 @@ void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal iner
 /* Forget what impulses have done in a step, or in a try of it that has failed: a try begins. */
 void contact_again(Contact *contact);
 /* How far the surface is from point p at a distance `gap` from the wall, as the last step has left it, m: a spring of
- * explicit dynamics that held it is gone, and it stands where it stood; what pulled it, too, where it is bonded. What
- * an elastic body rolls towards the wall is as far ahead as it has come to be; what nothing is known of, as strain has it. */
+ * explicit dynamics that held it is gone, and it stands where it stood; what pulled it, too, where it is bonded. A
+ * corner that turns with its body is as far ahead as it has come to be. Of what nothing is known, as strain has it. */
 PetscReal contact_reach_left(const NodalScene *scene, PetscInt p, ContactKind kind, const PetscReal *kept,
                              const PetscReal n[3], PetscReal gap);
 /* What else the room finds: contact points with nodes, and the surface of a part of a body. */
