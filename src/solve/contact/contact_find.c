@@ -2,15 +2,10 @@
 #include "material/law.h"
 #include "solve/contact/spring.h"
 
-/* Share of a cell within which what had no force at the start of the step counts as touching. */
-#define BENDING 27 /* most nodes of a point whose functions bend */
-
-#define TOUCHES 1e-6
-
-#define ROUND_OFF 1e-9
-
-/* strain up to which what may yield moves as a body */
-#define STIFF 0.02
+#define BENDING 27     /* most nodes of a point whose functions bend */
+#define TOUCHES 1e-6   /* of a cell: within this what had no force at the start of the step touches */
+#define STIFF 0.02     /* strain up to which what may yield moves as a body */
+#define ROUND_OFF 1e-9 /* by how much more a corner is farther away than its sides */
 
 /* Thickness of the material point's part of the body towards n: planes of the undeformed body along
  * its surface, of which those r apart are r |F^T n| apart now; or as far as the place on that which it stands
@@ -208,11 +203,9 @@ PetscReal contact_reach_left(const NodalScene *scene, PetscInt p, ContactKind ki
                              const PetscReal n[3], PetscReal gap)
 {
   const PetscBool sprung = contact_is_sprung(kept[0]) && scene->c->analysis.type != ANALYSIS_EXPLICIT;
-  const PetscReal held = kind == CONTACT_BONDED || !sprung ? kept[1] : PetscMin(kept[1], gap);
-  if (held <= 0) return contact_reach_of(scene->points, p, n);
-  if (kind == CONTACT_BONDED && sprung) return gap;
-  if (!turns(scene, p, kept[0])) return held;
-  return PetscMax(held, PetscMin(gap, ahead_of(scene->points, p, n)));
+  const PetscReal left = !sprung ? kept[1] : kind == CONTACT_BONDED ? gap : PetscMin(kept[1], gap);
+  if (left <= 0) return contact_reach_of(scene->points, p, n);
+  return turns(scene, p, kept[0]) ? PetscMax(left, PetscMin(gap, ahead_of(scene->points, p, n))) : left;
 }
 
 /* What the functions of the point are `reach` beyond it along -n, more than N there; means over a domain become those
