@@ -4,7 +4,7 @@
 #define P PETSC_TRUE, PETSC_FALSE /* points only */
 #define PG PETSC_TRUE, PETSC_TRUE /* points and grid */
 
-const OutputField output_fields[] = {
+static OutputField fields[OUTPUT_FIELDS_MOST + 1] = {
   {"displacement", "m", "displacement from the start", 3, PG},
   {"velocity", "m/s", "velocity", 3, PG},
   {"acceleration", "m/s2", "acceleration", 3, PG},
@@ -33,12 +33,24 @@ const OutputField output_fields[] = {
   {"id", "", "number of the point, the same through the whole run", 1, P},
   {"body", "", "index of the body in the case file", 1, P},
   {"material", "", "index of the material in the case file", 1, P},
-  {NULL, NULL, NULL, 0, PETSC_FALSE, PETSC_FALSE},
 };
+
+const OutputField *const output_fields = fields;
 
 const OutputField *output_field_find(const char *name)
 {
   for (const OutputField *field = output_fields; field->name; ++field)
     if (!strcmp(field->name, name)) return field;
   return NULL;
+}
+
+PetscBool output_field_add(const OutputField *field)
+{
+  static PetscInt loaded = OUTPUT_FIELDS_MOST; /* where they begin */
+  PetscInt n = 0;
+  while (fields[n].name && strcmp(fields[n].name, field->name) != 0) ++n;
+  if (fields[n].name) return (PetscBool)(n < loaded || fields[n].components == field->components);
+  loaded = PetscMin(loaded, n);
+  if (n < OUTPUT_FIELDS_MOST) fields[n] = *field;
+  return PETSC_TRUE;
 }

@@ -1,5 +1,5 @@
 /* The fields that `output: fields:` knows: one table for the case file, `talus list fields` and the
- * writers. */
+ * writers. What points of a loaded law keep joins it. */
 #pragma once
 #include <petscsys.h>
 
@@ -12,7 +12,12 @@ typedef struct {
   PetscBool points, grid;
 } OutputField;
 
-extern const OutputField output_fields[]; /* ended by name = NULL */
+#define OUTPUT_FIELDS_MOST 288
+extern const OutputField *const output_fields; /* ended by name = NULL */
 
 /* NULL if there is none of this name. */
 const OutputField *output_field_find(const char *name);
+
+/* Add one of a loaded law, whose words stay where they are; a name of talus's own fields goes on meaning those.
+ * PETSC_FALSE: one that was added before has this name and another number of components. */
+PetscBool output_field_add(const OutputField *field);

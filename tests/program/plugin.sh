@@ -23,6 +23,24 @@ sed 's/{.name = 0},\n};//; s/^static const TalusLawState state_fields.*/&\n  {"m
 build other.so other.c
 expect "resumed with another state" 2 "$talus" run --resume cut --law voce=./other.so
 expect "resumed" 0 "$talus" run --resume cut --law voce=./voce.so --quiet
+# What points keep is a field of the output, a tensor too; another law has none, which is 0
+build keeps.so "$source/tests/material/plugins/gradient.c" -DGIVES=1
+expect "states as fields" 0 on_ranks 2 "$talus" run bar.yaml --law voce=./voce.so --law green=./keeps.so --out kept --quiet --set 'output.fields=[displacement, b, deformation_gradient]' \
+  --set 'materials.rubber={law: green, density: 1000, lambda: 1e9, mu: 1e9}' --set 'bodies[0].shape.box.max=[2, 1]' --set 'boundary[2].displacement.x=0.2' \
+  --set 'bodies[1]={name: rest, shape: {box: {min: [2, 0], max: [4, 1]}}, material: rubber}'
+if python3 -c 'import h5py, numpy' 2>/dev/null; then
+  PYTHONPATH="$source/python" python3 - >out.txt 2>&1 <<'END' || fail "$name: $(tail -n 1 out.txt)"
+import numpy, talus
+p = talus.Run("kept").states[-1].points
+F, b, rubber = p["deformation_gradient"].reshape(-1, 3, 3), p["b"], p["position"][:, 0] > 2
+green = (F @ F.transpose(0, 2, 1)).reshape(-1, 9)[:, [0, 4, 8, 1, 5, 2]]
+assert rubber.any() and abs(green[rubber] - 1).max() > 0.01
+assert numpy.allclose(b[rubber], green[rubber], rtol=1e-12, atol=1e-12), abs(b[rubber] - green[rubber]).max()
+assert not b[p["position"][:, 0] < 1.9].any()
+END
+fi
+expect "a field without its law" 2 "$talus" check bar.yaml --law voce=./voce.so --set 'output.fields=[b]'
+says err.txt "there is no field 'b'" "what points of a law of one's own keep is a field, too, where --law loads it"
 cmp -s one/history.csv cut/history.csv || fail "$name: another history"
 says one/log.txt "law = --law=voce="
 

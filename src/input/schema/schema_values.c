@@ -257,13 +257,15 @@ PetscErrorCode SchemaReadEvery(SchemaReader *r, const SchemaEntry *e, const Yaml
 
 static void unknown_field(SchemaReader *r, const YamlNode *node)
 {
-  const char *words[64] = {NULL};
+  const char *words[OUTPUT_FIELDS_MOST + 1] = {NULL};
+  const char *word = node->kind == YAML_SCALAR ? node->text : NULL;
   char path[512];
   PetscInt n = 0;
-  for (const OutputField *field = output_fields; field->name && n < 63; ++field) words[n++] = field->name;
-  SchemaError(r, node, "%s: there is no field '%s'", yaml_path(node, path, sizeof(path)),
-              node->kind == YAML_SCALAR ? node->text : "[...]");
-  schema_hint_words(r, node->kind == YAML_SCALAR ? node->text : NULL, n, words);
+  for (const OutputField *field = output_fields; field->name; ++field) words[n++] = field->name;
+  SchemaError(r, node, "%s: there is no field '%s'", yaml_path(node, path, sizeof(path)), word ? word : "[...]");
+  schema_hint_words(r, word, n, words);
+  if (!diag_full(r->diag, DIAG_ERROR) && !(word && diag_nearest(word, words)))
+    diag_hint(r->diag, "what points of a law of one's own keep is a field, too, where --law loads it");
 }
 
 PetscErrorCode SchemaReadFields(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "case/fields.h"
 #include "material/elasticity.h"
 #include "material/plugin/plugin.h"
 
@@ -237,6 +238,21 @@ static PetscBool take_file(Plugin *g, const char *file, Diag *diag)
   return g->file[0] != '\0';
 }
 
+/* What its points keep can be written by its name. */
+static PetscBool offer_fields(const Plugin *g, Diag *diag)
+{
+  PetscInt k = 0;
+  for (const LawField *f = g->fields; f->name; k += f++->components) {
+    const OutputField field = {f->name, f->unit, f->help, f->components, PETSC_TRUE, PETSC_FALSE};
+    if (k < g->kept || output_field_add(&field)) continue;
+    diag_error(diag, NULL, "%s: the state '%s' of the law has %d numbers, and that of another law does not", g->file,
+               f->name, (int)f->components);
+    diag_hint(diag, "fields of the output have one size for all laws: call it otherwise");
+    return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
 static PetscBool load(Plugin *g, const char *spec, PetscBool umat, Diag *diag)
 {
   const char *equals = strchr(spec, '=');
@@ -266,7 +282,7 @@ PetscErrorCode PluginLoad(const char *spec, PetscBool umat, Diag *diag)
   }
   Plugin *g = &plugins[n_plugins];
   PetscCall(PetscMemzero(g, sizeof *g));
-  if (!load(g, spec, umat, diag)) PetscFunctionReturn(0);
+  if (!load(g, spec, umat, diag) || !offer_fields(g, diag)) PetscFunctionReturn(0);
   plugin_fill(n_plugins);
   law_register(&g->law);
   words[n_plugins++] = g->spec;

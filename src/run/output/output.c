@@ -6,7 +6,6 @@
 #include "material/algebra/invariants.h"
 #include "output/directory/run_dir_files.h"
 
-#define MAX_FIELDS 32
 #define NOT_WRITTEN (-2) /* bytes of a file that a state does not have: another stage of the run has it */
 
 /* Files of one state: of its points and, if the case asks, of its grid. */
@@ -99,8 +98,8 @@ static void strain_numbers(const Points *points, PetscInt p, const char *name, P
     for (int k = 0; k < 6; ++k) out[k] = strain[k];
 }
 
-/* One field of one point. */
-static PetscErrorCode PointValue(const Model *m, PetscInt p, const char *name, PetscReal *out)
+/* One field of one point, n numbers. */
+static PetscErrorCode PointValue(const Model *m, PetscInt p, const char *name, PetscInt n, PetscReal *out)
 {
   const Points *points = m->points;
   PetscReal sigma[6], F[9];
@@ -126,7 +125,7 @@ static PetscErrorCode PointValue(const Model *m, PetscInt p, const char *name, P
   else if (!strcmp(name, "material")) *out = (PetscReal)points->material[p];
   else {
     const PetscReal *state = model_state_field(m, p, name);
-    *out = state ? *state : 0;
+    for (PetscInt k = 0; k < n; ++k) out[k] = state ? state[k] : 0;
   }
   PetscFunctionReturn(0);
 }
@@ -142,7 +141,7 @@ PetscErrorCode OutputPointField(const Model *m, const OutputField *field, PetscR
     widen(n, m->dim, m->points->real[POINT_MECHANISM], data);
   else if (!strcmp(field->name, "acceleration")) widen(n, m->dim, m->points->real[POINT_A], data);
   else
-    for (PetscInt p = 0; p < n; ++p) PetscCall(PointValue(m, p, field->name, data + count_numbers(p, k)));
+    for (PetscInt p = 0; p < n; ++p) PetscCall(PointValue(m, p, field->name, k, data + count_numbers(p, k)));
   PetscFunctionReturn(0);
 }
 
@@ -181,8 +180,8 @@ PetscErrorCode OutputState(Output *o, MPI_Comm comm, const char *name, const Vtk
 static PetscErrorCode WritePoints(Output *o, Model *m, PetscBool *ok, char reason[256])
 {
   const PetscInt n_frames = walls_with_mass(m->c);
-  VtkField fields[MAX_FIELDS];
-  PetscReal *data[MAX_FIELDS], *x, *frames;
+  VtkField fields[OUTPUT_FIELDS_MOST];
+  PetscReal *data[OUTPUT_FIELDS_MOST], *x, *frames;
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
@@ -190,7 +189,7 @@ static PetscErrorCode WritePoints(Output *o, Model *m, PetscBool *ok, char reaso
   if (n_frames) walls_get_frames(m->walls, frames);
   PetscCall(PetscMalloc1(count_numbers(m->points->n, 3), &x));
   widen(m->points->n, m->dim, m->points->real[POINT_X], x);
-  for (const OutputField *f = output_fields; f->name && n < MAX_FIELDS; ++f) {
+  for (const OutputField *f = output_fields; f->name; ++f) {
     if (!f->points || !strcmp(f->name, "id") || !case_writes(m->c, f->name)) continue;
     PetscCall(PetscMalloc1(count_numbers(m->points->n, f->components), &data[n]));
     PetscCall(OutputPointField(m, f, data[n]));
@@ -291,14 +290,14 @@ static PetscErrorCode WriteCloud(const Grid *grid, VtkData *vtk, PetscInt n, Vtk
 static PetscErrorCode WriteGrid(Output *o, Model *m, PetscBool *ok, char reason[256])
 {
   const Grid *grid = m->grid;
-  VtkField fields[MAX_FIELDS];
-  PetscReal *data[MAX_FIELDS], *x;
+  VtkField fields[OUTPUT_FIELDS_MOST];
+  PetscReal *data[OUTPUT_FIELDS_MOST], *x;
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(count_numbers(grid->n_nodes, 3), &x));
   widen(grid->n_nodes, m->dim, grid->x, x);
-  for (const OutputField *f = output_fields; f->name && n < MAX_FIELDS; ++f) {
+  for (const OutputField *f = output_fields; f->name; ++f) {
     if (!f->grid || !case_writes(m->c, f->name)) continue;
     PetscCall(GridField(o, m, f, &data[n]));
     fields[n] = (VtkField){.name = f->name, .unit = f->unit, .components = f->components, .data = data[n]};

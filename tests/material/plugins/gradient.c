@@ -7,6 +7,7 @@
 #ifndef BAD
 #define BAD 0
 #endif
+#define COMPONENTS (BAD == 3 ? 4 : BAD == 9 ? 1 : 6)
 
 enum { LAMBDA, MU };
 static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
@@ -17,7 +18,7 @@ static const TalusLawParameter parameters[] = {
   {.name = 0},
 };
 static const TalusLawState fields[] = {
-  {"b", "", "left Cauchy-Green tensor", BAD == 3 ? 4 : 6, {1, 1, 1, 0, 0, 0}},
+  {"b", "", "left Cauchy-Green tensor", COMPONENTS, {1, 1, 1, 0, 0, 0}},
   {.name = 0},
 };
 

@@ -252,7 +252,8 @@ static const SchemaTable mixed = {
   .name = "mixed", .help = "Numbers of `formulation: mixed`; others have no use for them.", .entries = mixed_entries};
 
 static const SchemaEntry output_entries[] = {
-  KEY("fields", FIELDS, NULL, "fields to write, see `talus list fields`",
+  KEY("fields", FIELDS, NULL,
+      "fields to write, see `talus list fields`; what points of a loaded law keep, too (docs/plugin.md)",
       .fallback = "[displacement, velocity, stress]", AT(OutputSpec, fields), .count = offsetof(OutputSpec, n_fields)),
   KEY("every", EVERY, NULL, "when states are written", .fallback = "end", AT(OutputSpec, every)),
   KEY("history", EVERY, NULL, "when rows of history.csv are written", .fallback = "{steps: 1}",
