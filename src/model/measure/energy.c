@@ -231,13 +231,33 @@ static PetscReal held_work(const Model *m)
   return m->space->basis->domains ? holding_work(&in, m->dim) : 0;
 }
 
+/* What of that was remembered while everything rested gives back: it is no load, though it stands among them. */
+static PetscErrorCode RestWork(const Model *m, PetscReal *work)
+{
+  const PetscInt owned = m->grid->n_owned * m->dim;
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  PetscReal *force;
+
+  PetscFunctionBeginUser;
+  *work = 0;
+  for (PetscInt k = 0; k < m->forces.n; ++k) {
+    if (m->forces.one[k].kind != &nodal_force_rest) continue;
+    PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &force));
+    const NodalOutput out = {.force = force};
+    PetscCall(nodal_force_rest.assemble(m->forces.one[k].data, &scene, &out));
+    for (PetscInt i = 0; i < owned; ++i) *work -= force[i] * m->nodes->du[i];
+    PetscCall(PetscFree(force));
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 {
   const PetscReal damping = model_damping(m);
   const NodalFields *n = m->nodes;
   const PetscReal end = share_of_end(m);
   const ContactWork contact = contact_work(m);
-  PetscReal g0[3], g1[3], *before, *after, held = 0, impulse = 0, unbalanced = 0;
+  PetscReal g0[3], g1[3], *before, *after, held = 0, impulse = 0, unbalanced = 0, rest;
 
   PetscFunctionBeginUser;
   *e = (EnergyStep){0};
@@ -264,7 +284,9 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
     const NodalField du = {{n->du, n->du}, {1, 0}}, mean = {{n->v, n->v1}, {0.5, 0.5}};
     e->damped = damping * mass_product(m, du, mean);
   }
-  e->held = held_work(m);
+  PetscCall(RestWork(m, &rest));
+  e->external -= rest;
+  e->held = held_work(m) - rest;
   e->friction = contact.sliding;
   held += contact.moving;
   e->boundary = held + impulse - contact.rigid;
