@@ -44,6 +44,7 @@ typedef struct Explicit {
   PetscInt width;        /* 1 + 2 dim */
   PetscReal *sum;        /* n_nodes x width: mass, kg, momentum, kg m/s, and force, N */
   PetscReal *motion;     /* n_nodes x 2 dim: velocity at the end of the substep, and what points gain, m/s */
+  PetscReal *springs;    /* with walls, n_nodes x 2: stiffness of the springs, N/m, and mass, kg */
   PetscReal *straining;  /* n_nodes x dim: the velocity that strains the points, m/s */
   PetscBool as_strained; /* do points move by it, too, as those with gimp and splines must (explicit_way)? */
   /* n_nodes: > 0 where points of some rank can come in the lap; then, in each substep, at nodes that carry neither

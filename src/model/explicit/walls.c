@@ -15,6 +15,9 @@
 #include "solve/contact/spring.h"
 
 #define DASHPOT 0.5 /* of the impedance of the material */
+/* (omega dt)^2 of springs alone on the nodes: a full cell beside a wall has 0.64 with a Courant number of 0.8, and 4 is
+ * unstable, of which waves have up to 2.56 (docs/theory.md, section 73) */
+#define MOST 1.3
 
 static PetscReal dot(const PetscReal a[3], const PetscReal b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -77,6 +80,37 @@ static void push(const Model *m, const Explicit *e, ContactPoint *c)
   c->state = contact_law(&c->law, &place, nowhere, &before, &c->now, NULL);
 }
 
+/* A node that points hardly reach has less mass than functions at the surface give it of the springs' stiffness: where
+ * grains flow, and single ones come there, these are as stiff as the substep bears, by row sums of N M^-1 N^T k. */
+static PetscErrorCode Limit(const Model *m, const Explicit *e)
+{
+  const PetscReal dt = case_courant(&m->c->analysis) * e->critical;
+  const Contact *s = m->contact;
+  PetscReal *at = e->springs;
+
+  PetscFunctionBeginUser;
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) c->borne = 1;
+  if (!materials_yield(m->c->n_materials, m->materials)) PetscFunctionReturn(0); /* bodies stay whole */
+  for (PetscInt k = 0; k < e->n_active; ++k) {
+    at[2 * e->active[k]] = 0;
+    at[2 * e->active[k] + 1] = e->sum[e->active[k] * e->width];
+  }
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
+    for (PetscInt k = c->first; k < c->first + c->n; ++k) at[2 * s->node[k]] += PetscAbsReal(s->N[k]) * c->law.penalty;
+  PetscCall(NodesShare(m, 2, at));
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    PetscReal square = 0; /* of a frequency */
+    for (PetscInt k = c->first; k < c->first + c->n; ++k) {
+      const PetscReal *node = at + 2 * s->node[k];
+      if (node[1] > 1e-300) square += PetscAbsReal(s->N[k]) * node[0] / node[1];
+    }
+    c->borne = square * dt * dt > MOST ? MOST / (square * dt * dt) : 1;
+    c->law.penalty *= c->borne;
+    c->law.along *= c->borne;
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode WallsPush(Model *m, Explicit *e)
 {
   const PetscInt dim = m->dim;
@@ -90,6 +124,9 @@ PetscErrorCode WallsPush(Model *m, Explicit *e)
     c->law.penalty = stiffness(m, &c->law) * c->section * modulus_of(c) / s->length;
     if (heavy) c->law.penalty *= e->ease[heavy - s->rigid];
     c->law.along = c->law.penalty;
+  }
+  PetscCall(Limit(m, e));
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     if (!contact_is_sprung(*kept_of(m, c))) take_over(c);
     push(m, e, c);
     if (c->state == CONTACT_OPEN) continue;
@@ -117,18 +154,32 @@ static void move_of(const Model *m, const Explicit *e, const ContactPoint *c, Pe
     }
 }
 
+/* Work that sliding by s takes: of the mean of the force and of that which it leads to, since force and motion stand
+ * half a substep apart; what is bonded does not slide. */
+static PetscReal sliding_work(const ContactPoint *c, const PetscReal s[3])
+{
+  PetscReal next[3], square = 0, work = 0;
+  for (int d = 0; d < 3; ++d) next[d] = c->now.shear[d] - c->law.along * s[d], square += next[d] * next[d];
+  const PetscReal most = contact_most(&c->law, c->now.pressure), size = PetscSqrtReal(square);
+  const PetscReal part = size > most ? most / size : 1;
+  for (int d = 0; d < 3; ++d) work -= 0.5 * (c->now.shear[d] + part * next[d]) * s[d];
+  return c->law.kind == CONTACT_BONDED ? 0 : work;
+}
+
 /* What its law starts from in the next substep; after the last one of the run's step, the force itself. move: of
  * its place on the surface against the wall. */
 static void keep(const Model *m, Explicit *e, const ContactPoint *c, const PetscReal move[3], PetscReal *kept)
 {
   const PetscReal closing = dot(move, c->normal), rubs = c->law.kind != CONTACT_FRICTIONLESS;
   const PetscBool heavy = contact_rigid(m->contact, c) != NULL;
-  const PetscReal dashpot = DASHPOT * c->section * impedance_of(c) * (heavy ? heavy_substep(e) / e->critical : 1);
+  const PetscReal dashpot =
+    DASHPOT * c->borne * c->section * impedance_of(c) * (heavy ? heavy_substep(e) / e->critical : 1);
   const PetscReal along = e->dt > 0 ? -dashpot * closing / e->dt : c->now.pressure;
+  PetscReal slip[3];
+  for (int d = 0; d < 3; ++d) slip[d] = move[d] - closing * c->normal[d];
+  if (rubs) e->rubbed[c->wall] += sliding_work(c, slip);
   for (PetscInt d = 0; d < m->dim; ++d) {
-    const PetscReal slip = move[d] - closing * c->normal[d];
-    kept[d] = along * c->normal[d] + rubs * (c->now.shear[d] - c->law.along * slip);
-    e->rubbed[c->wall] -= c->now.shear[d] * slip;
+    kept[d] = along * c->normal[d] + rubs * (c->now.shear[d] - c->law.along * slip[d]);
     if (!heavy) e->boundary += (c->now.pressure * c->normal[d] + c->now.shear[d]) * c->swept[d];
   }
 }

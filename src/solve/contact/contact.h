@@ -36,6 +36,7 @@ typedef struct {
   PetscReal bond;    /* that the wall bears along itself without pressure, N */
   ContactLaw law;
   PetscReal stiffest; /* penalty, N/m */
+  PetscReal borne;    /* explicit dynamics: the share of its spring that the substep bears */
   PetscReal left;     /* gap or slip when multipliers were last changed, m; 0: not yet in contact */
   ContactForce multiplier, now;
   ContactState state;  /* at the last assembly */
@@ -195,6 +196,7 @@ typedef struct {
   PetscReal rate;      /* times `swept` (work: `passes`) it is the velocity of the wall */
   PetscBool pulls;     /* may the wall pull? Else only what moves into it is stopped */
   PetscBool start;     /* of those in contact before the step, or of those in contact after it? */
+  PetscBool bonded;    /* of nothing else? */
 } ContactMotion;
 
 /* Collective. The least change, by mass, of nodal motion that lets points in contact go with their
