@@ -33,13 +33,14 @@ static PetscBool stands_alone(const Case *c) { return case_is_static(&c->analysi
 /* Nodes that follow others make a matrix without lumped mass well conditioned, and take less energy than what holds
  * them to linear motion; with lumped mass they cost what swings a fifth more iterations. What has come to rest in a
  * stage before must find the same nodes. Where statics yields those follow, too, that are reached a little more
- * (docs/theory.md, section 62). */
+ * (docs/theory.md, section 62). Beside corners of what is bonded they make energy (section 73). */
 static PetscReal share_that_follows(const Case *c)
 {
   const PetscBool yields = anything_yields(c);
   if (c->spec) return 0.02;
   if (stands_alone(c)) return yields ? 0.1 : 0.02;
-  return keeps_all(c) && !yields ? 0.3 : 0;
+  if (!keeps_all(c) || yields) return 0;
+  return case_has_contact(c, CONTACT_BONDED) ? 0.02 : 0.3;
 }
 
 /* Measured (docs/theory.md, section 9): elastic bodies keep angular momentum and energy best
@@ -89,13 +90,14 @@ PetscErrorCode DefaultTransfer(Case *c)
 }
 
 /* An acceleration that points carry is out of balance on the next grid (docs/theory.md, "The
- * midpoint rule"). */
+ * midpoint rule"); that of what is bonded, with all functions. */
 PetscErrorCode DefaultScheme(Case *c)
 {
   const AnalysisSpec *a = &c->analysis;
 
   PetscFunctionBeginUser;
-  if (keeps_all(c) && !a->scheme && a->bossak == 0 && !analysis_tunes_newmark(a))
+  const PetscBool bonded = keeps_slopes(c) && case_has_contact(c, CONTACT_BONDED);
+  if ((keeps_all(c) || bonded) && !a->scheme && a->bossak == 0 && !analysis_tunes_newmark(a))
     PetscCall(PetscStrallocpy("midpoint", &c->analysis.scheme));
   PetscFunctionReturn(0);
 }

@@ -9,7 +9,13 @@
  * wrongly held there throws the iteration back by as much as it is held (docs/theory.md, section 71). */
 #define ALONG_FLOWS 2
 
-#define CLOSED 1e-5 /* of a cell: gaps and slips that remain of contact */
+#define CLOSED 1e-5 /* of a cell: gaps and slips that remain of contact, */
+/* but no more than that share of what it moves by in the step, or its wall: a block that is squeezed by less than such a
+ * gap would bear any force. Less than the last, of a cell, is round-off. */
+#define MOVING 1e-3
+#define STANDING 1e-9
+#define TRIES 6      /* changes in which that is sought: a step must not fail for it */
+#define BARELY 1e-10 /* of a cell: what touches at the start is pressed as by such a gap: less than any weight */
 /* Where grains flow, that share of what the surface moves in the step, up to so much of a cell. */
 #define MOVED 3e-3
 #define FLOWING 5e-4
@@ -46,7 +52,7 @@ static void first_multiplier(const Contact *s, ContactPoint *c)
   for (int d = 0; d < 3; ++d) c->multiplier.pressure += whole * c->last[d] * c->normal[d];
   for (int d = 0; d < 3; ++d) c->multiplier.shear[d] = whole * c->last[d] - c->multiplier.pressure * c->normal[d];
   if (c->before != CONTACT_OPEN && c->open > -CLOSED * s->length) c->multiplier.pressure += c->law.penalty * c->open;
-  if (c->touches && c->before == CONTACT_OPEN) c->multiplier.pressure = 0.1 * CLOSED * s->length * c->law.penalty;
+  if (c->touches && c->before == CONTACT_OPEN) c->multiplier.pressure = BARELY * s->length * c->law.penalty;
 }
 
 /* What a cell of one material opposes to a pressure, N/m3; of two that stand behind each other. */
@@ -165,12 +171,24 @@ static void stiffen(ContactPoint *c, PetscReal left)
   c->law.along *= c->law.penalty / before;
 }
 
-/* What may stay of gaps, or of slips, which `times` as much may. */
-static PetscReal allowed(const Contact *s, PetscReal moved, PetscReal times)
+/* How far its body, or its wall, takes a contact point in the step, m. */
+static PetscReal travel_of(const Contact *s, const ContactPoint *c, const NodalScene *scene)
+{
+  PetscReal own[3] = {0}, square[2] = {0};
+  if (c->state == CONTACT_OPEN) return 0;
+  for (PetscInt e = c->first; e < c->first + c->own; ++e)
+    for (PetscInt d = 0; d < s->dim; ++d) own[d] += scene->whole * s->N[e] * scene->du[s->node[e] * s->dim + d];
+  for (int d = 0; d < 3; ++d) square[0] += own[d] * own[d], square[1] += c->swept[d] * c->swept[d];
+  return PetscSqrtReal(PetscMax(square[0], square[1]));
+}
+
+/* What may stay of gaps, or of slips, which `times` as much may; moved: against the wall, and at all. */
+static PetscReal allowed(const Contact *s, PetscInt change, PetscReal moved, PetscReal travelled, PetscReal times)
 {
   const PetscReal closed = CLOSED * s->length;
-  if (!s->share.flows) return closed;
-  return PetscMax(closed, times * PetscMin(MOVED * moved, FLOWING * s->length));
+  if (change >= TRIES && !s->share.flows) return closed;
+  if (s->share.flows) return PetscMax(closed, times * PetscMin(MOVED * moved, FLOWING * s->length));
+  return PetscMax(STANDING * s->length, PetscMin(closed, MOVING * travelled));
 }
 
 /* What counts against ALLOWED where gaps stall. */
@@ -184,8 +202,9 @@ static PetscReal stalled_of(const ContactPoint *c, PetscInt change, PetscReal le
 PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt change, PetscBool *again)
 {
   Contact *s = data;
-  /* of gaps, and of slips of what does not rub; of what may be stiffened; motion; stalled_of; slips of what rubs */
-  PetscReal worst[5] = {0}, of_all[5];
+  /* of gaps, and of slips of what does not rub; of what may be stiffened; motion; stalled_of; slips of what rubs;
+   * travel_of */
+  PetscReal worst[6] = {0}, of_all[6];
 
   PetscFunctionBeginUser;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
@@ -196,12 +215,14 @@ PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt chan
     if (is_soft(c, left)) worst[1] = PetscMax(worst[1], left);
     worst[2] = PetscMax(worst[2], motion_of(c));
     worst[3] = PetscMax(worst[3], stalled_of(c, change, left));
+    worst[5] = PetscMax(worst[5], travel_of(s, c, scene));
   }
-  PetscCall(MPIU_Allreduce(worst, of_all, 5, MPIU_REAL, MPIU_MAX, scene->grid->comm));
+  PetscCall(MPIU_Allreduce(worst, of_all, 6, MPIU_REAL, MPIU_MAX, scene->grid->comm));
   const PetscReal all = PetscMax(of_all[0], of_all[4]);
   const PetscBool slow = change > 0 && all > STALLS * s->worst, soft = of_all[1] > CLOSED * s->length;
   const PetscBool stalls = slow && !soft && of_all[3] <= ALLOWED * s->length;
-  const PetscBool stay = of_all[0] <= allowed(s, of_all[2], 1) && of_all[4] <= allowed(s, of_all[2], SLIPS);
+  const PetscBool stay = of_all[0] <= allowed(s, change, of_all[2], of_all[5], 1) &&
+                         of_all[4] <= allowed(s, change, of_all[2], of_all[5], SLIPS);
   *again = !stay && change < MOST_CHANGES && !stalls;
   s->worst = all;
   if (!*again) PetscFunctionReturn(0);

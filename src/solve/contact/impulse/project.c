@@ -44,8 +44,8 @@ static unsigned char held_of(const ContactPoint *c, const ContactMotion *m)
 {
   const ContactState state = m->start ? c->before : c->state;
   const PetscBool meets = state != CONTACT_OPEN || (m->start && c->touches);
-  if (m->start && c->gone) return 0;
-  return state == CONTACT_STICKS || (meets && c->law.kind == CONTACT_STICK) ? 3 : meets;
+  if ((m->start && c->gone) || (m->bonded && c->law.kind != CONTACT_BONDED)) return 0;
+  return state == CONTACT_STICKS || (meets && (c->law.kind == CONTACT_STICK || m->bonded)) ? 3 : meets;
 }
 
 /* Motion of a contact point along its wall, 3 numbers. */
@@ -127,6 +127,7 @@ static void lose(const Projection *w, ContactSum *sum)
   PetscReal v[3];
   for (PetscInt j = 0; j < w->n_held; ++j) {
     const PetscInt k = w->list[j];
+    if (w->s->point[k].law.kind == CONTACT_BONDED) continue; /* it does not slide: lost in the transfer */
     slip_of(w, k, v);
     sum[w->s->point[k].wall].sliding -= 0.5 * impulse_dot(3, v, w->p + 3 * k);
   }
