@@ -275,6 +275,8 @@ PetscErrorCode AdviseThin(const Model *model, Diag *diag);
 PetscErrorCode AdvisePulses(const Model *model, Diag *diag);
 /* The same of walls and held nodes that jump when dynamics begin: start/jumps.c. */
 void advise_jumps(const Model *model, Diag *diag);
+/* units.c. Collective. Warn of numbers that are no matter's in kg, m, s and Pa. */
+PetscErrorCode AdviseUnits(const Model *model, Diag *diag);
 /* Collective. The same of a drum that is not closed: start/drum.c. */
 PetscErrorCode AdviseOpenDrum(const Model *model, Diag *diag);
 /* Rayleigh damping, where there is inertia, 1/s. */

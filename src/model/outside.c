@@ -99,6 +99,23 @@ static PetscBool is_held(const Model *m, PetscInt cell, PetscInt side, PetscInt 
   return PETSC_FALSE;
 }
 
+/* Does a wall stand within half a cell of the side's middle? */
+static PetscBool has_wall(const Model *m, PetscInt cell, PetscInt side)
+{
+  const Cell *type = grid_cell(m->grid, cell);
+  PetscReal x[3 * CELL_MAX_NODES], middle[3] = {0, 0, 0};
+  WallPlace place;
+  grid_cell_x(m->grid, cell, x);
+  for (PetscInt k = 0; k < type->face_nodes; ++k)
+    for (PetscInt d = 0; d < m->dim; ++d)
+      middle[d] += x[type->face[side][k] * m->dim + d] / (PetscReal)type->face_nodes;
+  for (PetscInt k = 0; m->walls && k < m->c->n_walls; ++k)
+    if (wall_near(m->walls, k, m->time, middle, m->grid->smallest, 0, &place) &&
+        PetscAbsReal(place.gap) < 0.51 * m->grid->smallest)
+      return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Sides of filled cells at the edge of the grid that nothing holds, per body and direction (-x x -y
  * y -z z). */
 static PetscErrorCode CountFree(const Model *m, PetscInt *count)
@@ -115,7 +132,7 @@ static PetscErrorCode CountFree(const Model *m, PetscInt *count)
     const PetscInt cell = outer->face_cell[f], side = outer->face_side[f];
     if (body[cell] < 0) continue;
     const PetscInt axis = side_axis(m, cell, side, &direction);
-    if (!is_held(m, cell, side, axis)) ++count[6 * body[cell] + 2 * axis + (direction > 0)];
+    if (!is_held(m, cell, side, axis) && !has_wall(m, cell, side)) ++count[6 * body[cell] + 2 * axis + (direction > 0)];
   }
   PetscCall(PetscFree(body));
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, count, (PetscMPIInt)(6 * m->c->n_bodies), MPIU_INT, MPI_SUM, m->comm));

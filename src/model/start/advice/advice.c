@@ -216,6 +216,7 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; m->walls && k < m->c->n_walls; ++k) advise_wall(m, k, diag);
   advise_jumps(m, diag);
+  PetscCall(AdviseUnits(m, diag));
   for (PetscInt b = 0; b < m->c->n_bodies; ++b)
     for (PetscInt i = 0; i < m->c->n_materials; ++i)
       if (!strcmp(m->c->bodies[b].material, m->c->materials[i].name)) advise_locking(m, &m->c->bodies[b], i, diag);
