@@ -94,4 +94,93 @@ expect "a wall jumps" 0 "$talus" check jumps.yaml
 says err.txt "wall 'floor' jumps by 0.1 m at the start"
 expect "a wall starts" 0 "$talus" check jumps.yaml --set 'walls[0].motion[0].amplitude=[[0, 0], [0.1, 1]]'
 ! grep -q jumps err.txt || fail "$name: $(cat err.txt)"
+# A block squeezed by a millionth of its height bears what its modulus says, E / (1 - nu^2) strain, however small: what
+# gaps of a fixed size leave would be a third of it.
+cat >squeezed.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, -0.5], max: [2, 1]}, size: 0.0625}
+bodies:
+  - {name: b, shape: {box: {min: [0, 0.037], max: [0.5, 0.337]}}, points_per_cell: 4, material: m}
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{name: sym, on: {x: 0}, fix: [x]}]
+walls:
+  - {name: lo, shape: {half-space: {point: [0, 0.037], normal: [0, 1]}}}
+  - {name: hi, shape: {half-space: {point: [0, 0.337], normal: [0, -1]}}, motion: [{displacement: {y: -3e-7}}]}
+measures: {force: {wall_force: y, of: {wall: lo}}}
+output: {fields: [stress]}
+END
+for way in "mpm 1e-4" "mpm 1e-6" "fem 1e-6"; do
+  set -- $way
+  box='{min: [0, -0.5], max: [2, 1]}'
+  [ $1 = mpm ] || box='{min: [0, 0.037], max: [0.5, 0.337]}'
+  for ranks in 1 3; do
+    expect "squeezed by $2, $1 on $ranks" 0 on_ranks $ranks "$talus" run squeezed.yaml --out squeezed --force --quiet --set method=$1 --set "grid={box: $box, size: [0.0625, 0.06]}" \
+      --set "walls[1].motion[0].displacement.y=$(awk "BEGIN {print -0.3 * $2}")"
+    awk -F, -v e=$2 'END {exact = 0.5 * e * 1e6 / 0.91; exit !($3 > 0.997 * exact && $3 < 1.003 * exact)}' squeezed/history.csv || fail "$name: $(tail -n 1 squeezed/history.csv)"
+  done
+done
+
+# A block that is bonded to a wall anywhere in its cells and swings gains no energy, in short steps above all.
+cat >swings.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, end: 0.1, step: 0.00025}
+grid: {box: {min: [0.4, -0.6], max: [1.9, 0.65]}, size: 0.0625}
+bodies:
+  - {name: b, shape: {box: {min: [1.055, -0.113], max: [1.305, 0.137]}}, points_per_cell: 4, material: m, velocity: [0, 0.5]}
+materials: {m: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
+walls: [{name: w, shape: {box: {min: [0.613, -0.413], max: [1.055, 0.437]}}, contact: bonded}]
+measures: {all: {energy: mechanical}, balance: {energy: balance}}
+output: {fields: [stress]}
+END
+for basis in gimp bspline cell; do
+  for at in 1.055 1.075; do
+    expect "bonded at $at, $basis" 0 "$talus" run swings.yaml --out swings --force --quiet --set "basis={$basis: {}}" --set "walls[0].shape.box.max=[$at, 0.437]" \
+      --set "bodies[0].shape.box.min=[$at, -0.113]" --set "bodies[0].shape.box.max=[$(awk "BEGIN {print $at + 0.25}"), 0.137]"
+    awk -F, 'NR == 2 {first = $3} NR > 1 && ($3 > 1.001 * first || $4 * $4 > 1e-12) {bad = 1} END {exit bad || $3 < 0.7 * first}' swings/history.csv || fail "$name: $(tail -n 1 swings/history.csv)"
+  done
+done
+# Grains that run out over a wall that rubs, or lets nothing slide, in explicit steps of the largest size: points that come
+# to nodes of next to no mass are not thrown up.
+cat >runs_out.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+basis: {cell: {}}
+analysis: {type: explicit, end: 0.5, step: 2e-3}
+grid: {box: {min: [0, -0.02], max: [1.2, 0.8]}, size: 0.01}
+bodies:
+  - {name: grains, shape: {box: {min: [0, 0], max: [0.2, 0.3]}}, points_per_cell: 4, material: grains}
+materials:
+  grains: {law: mohr-coulomb, density: 1600, young: 1e6, poisson: 0.3, friction_angle: 30, dilatancy_angle: 1, cohesion: 0}
+boundary: [{name: axis, on: {boundary: left}, fix: [x]}]
+walls: [{name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, friction: 0.577}]
+loads: {gravity: [0, -9.81]}
+measures: {transfer: {energy: transfer}, friction: {energy: friction}, came: {energy: external}, mass: {mass: total}}
+output: {fields: [displacement]}
+END
+for way in "rubs 1" "rubs 2" "sticks 1"; do
+  set -- $way
+  law=friction
+  [ $1 = rubs ] || law=stick
+  expect "runs out, $way" 0 on_ranks $2 "$talus" run runs_out.yaml --out runs_out --force --quiet --set "walls[0]={name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, contact: $law$([ $law = stick ] || echo ', friction: 0.577')}"
+  awk -F, -v most=$([ $law = stick ] && echo 0.05 || echo 0.02) 'NR > 1 { if ($3 < -0.002 * 60 || $3 > most * $5 + 0.1 || $4 < -0.005 * 60) bad = 1 } END { exit bad || $6 < 95.999 || $6 > 96.001 }' runs_out/history.csv ||
+    fail "$name: $(tail -n 1 runs_out/history.csv)"
+done
+# A wall at the edge of the grid is what holds there; numbers in other units are told of.
+sed 's/^grid.*/grid: {box: {min: [0, -0.01], max: [1.2, 0.8]}, size: 0.01}/; s/^boundary.*//; s/^walls: \[/&{name: back, shape: {half-space: {point: [0, 0], normal: [1, 0]}}}, /' runs_out.yaml >units.yaml
+expect "a wall at the edge" 0 "$talus" check units.yaml
+! grep -q "fills the grid" err.txt || fail "$name: $(cat err.txt)"
+! grep -q "stiffness bears" err.txt || fail "$name: $(cat err.txt)"
+expect "no wall there" 0 "$talus" check units.yaml --set 'walls[0].shape.half-space.point=[-0.02, 0]'
+says err.txt "'grains' fills the grid to its edge towards -x"
+expect "radians" 0 "$talus" check units.yaml --set materials.grains.friction_angle=0.5236 --set materials.grains.dilatancy_angle=0
+says err.txt "an angle of friction of 0.5236 degrees holds next to nothing" "0.5236 radians are 30"
+expect "degrees" 0 "$talus" check units.yaml --set walls[1].friction=30
+says err.txt "a coefficient of friction of 30 is an angle of 88.1 degrees" "an angle is \`friction_angle\`, in degrees"
+expect "millimetres" 0 "$talus" check units.yaml --set 'loads.gravity=[0, -9810]' --set materials.grains.young=8e5
+says err.txt "the weight of 'grains' is 4.3" "gravity in m/s2"
+expect "kPa" 0 "$talus" check units.yaml --set materials.grains.density=1.6e-9
+says err.txt "waves would run at" "densities are in kg/m3"
 finish
