@@ -142,6 +142,14 @@ for basis in gimp bspline cell; do
     awk -F, 'NR == 2 {first = $3} NR > 1 && ($3 > 1.001 * first || $4 * $4 > 1e-12) {bad = 1} END {exit bad || $3 < 0.7 * first}' swings/history.csv || fail "$name: $(tail -n 1 swings/history.csv)"
   done
 done
+# What a turning wall gives by its torque is what angular momentum gains.
+sed 's/contact: bonded/&, motion: [{rotation: {centre: [0.2, 0.1], rate: 4}, amplitude: [[0, 0], [0.1, 1]]}]/; s/step: 0.00025/step: 0.002/; s/, velocity: .0, 0.5.//
+  s/^measures.*/measures: {torque: {wall_torque: z, of: {wall: w}}, gained: {angular_momentum: z}}/; s/^grid.*/grid: {box: {min: [-1.6, -1.6], max: [1.9, 1.9]}, size: 0.0625}/' swings.yaml >turns.yaml
+for ranks in 1 3; do
+  expect "turns on $ranks" 0 on_ranks $ranks "$talus" run turns.yaml --out turns --force --quiet
+  awk -F, 'NR == 2 { t = $1 } NR > 2 { sum += $3 * ($1 - t); t = $1; off = sum - $4 } END { exit !($4 > 5 && off * off < 1e-14 * $4 * $4) }' turns/history.csv || fail "$name: $(tail -n 1 turns/history.csv)"
+done
+
 # Grains that run out over a wall that rubs, or lets nothing slide, in explicit steps of the largest size: points that come
 # to nodes of next to no mass are not thrown up.
 cat >runs_out.yaml <<'END'

@@ -295,7 +295,8 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
   for (PetscInt k = 0; k < s->n; ++k) {
     ContactPoint *c = s->point + k;
     PetscReal f[3], x[3];
-    contact_place(s, c, m->nodes->du, m->scheme->inertia ? 0 : 1, x); /* in statics it is the force at the end */
+    /* the mean force acts in the middle of the way, as angular momentum has it; in statics it is that at the end */
+    contact_place(s, c, m->nodes->du, m->scheme->inertia ? 0.5 : 1, x);
     contact_balance(s, c, f);
     contact_add(x, m->dim, f, now + c->wall);
     contact_excess(s, c, f);

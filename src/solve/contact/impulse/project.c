@@ -243,8 +243,12 @@ PetscErrorCode ContactProject(Contact *s, const ContactMotion *m, ContactSum *su
   for (PetscInt k = 0; k < s->n_rigid; ++k) rigid_push(s->rigid + k, w.push + RIGID * k);
   lose(&w, sum);
   s->driven += driven(&w);
-  for (PetscInt j = 0; j < w.n_held; ++j)
-    contact_add(s->point[w.list[j]].x, s->dim, w.p + 3 * w.list[j], sum + s->point[w.list[j]].wall);
+  for (PetscInt j = 0; j < w.n_held; ++j) {
+    const ContactPoint *c = s->point + w.list[j];
+    PetscReal x[3];
+    contact_place(s, c, m->du, m->start ? 0 : 1, x);
+    contact_add(x, s->dim, w.p + 3 * w.list[j], sum + c->wall);
+  }
   PetscCall(Destroy(&w));
   PetscFunctionReturn(0);
 }
