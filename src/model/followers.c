@@ -111,7 +111,11 @@ PetscErrorCode FollowersStart(Model *m, Diag *diag)
     diag_error(diag, path,
                k < n_measures ? "no material carries the tracer: it starts outside of all bodies"
                               : "no material carries the force: it acts outside of all bodies");
-    diag_hint(diag, "a place in a body, on its surface, or in a cell beside it");
+    if (m->c->spec && k < n_measures)
+      diag_hint(diag,
+                "in stage '%s', where bodies that are absent carry nothing: let the measure begin with another one",
+                m->c->spec->name);
+    else diag_hint(diag, "a place in a body, on its surface, or in a cell beside it");
   }
   PetscCall(PetscFree(u));
   PetscFunctionReturn(0);

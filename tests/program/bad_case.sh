@@ -39,6 +39,8 @@ printf 'just words\n' >case.yaml
 refused "words" "case.yaml:1:1: error: " "key: value"
 cantilever | sed 's/^  rubber/\trubber/' >case.yaml
 refused "tab" "case.yaml:9:1: error: " "tab"
+printf 'title: x\n\tkinematics: plane-strain\nmethod: mpm\n' >case.yaml
+refused "tab behind a text" "case.yaml:2:1: error: syntax: a tab indents this line" "tab"
 cantilever | head -c 300 >case.yaml
 refused "truncated" "case.yaml:" "error: "
 

@@ -427,6 +427,8 @@ refused "a key that stages do not know" "key 'grid' of stages[1] is not known" c
 refused "a measure that is not there" "there is no 'setle' in measures that the stage could change" measures.yaml --set 'stages[1].measures={setle: {absent: true}}'
 says err.txt "did you mean 'settle'?"
 refused "another unit in one column" "'settle' was a number in 'm' in the stages before, and would be one in 'N'" measures.yaml --set 'stages[2].measures.settle={reaction: y, of: {boundary: floor}}'
+refused "a tracer in a body that comes later" "no material carries the tracer" column.yaml --set 'bodies[1]={name: top, absent: true, shape: {box: {min: [3, 0], max: [4, 1]}}, material: soil}' --set 'measures.later={displacement: y, of: {tracer: [3.6, 0.3]}}'
+says err.txt "in stage 'weight', where bodies that are absent carry nothing"
 refused "a condition on what is gone" "there is no 'settle' in measures (stage 'dig')" measures.yaml --set 'stages[1].analysis={until: [{measure: settle, below: -1}]}'
 refused "an interface that is gone" "the interface 'joint' between 'block' and 'base' is gone" slide.yaml --set 'stages[1].interfaces=[]' --set 'measures={}'
 says err.txt "\`contact: bonded\` holds bodies together"

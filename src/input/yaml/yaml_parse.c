@@ -266,6 +266,21 @@ static PetscErrorCode TakeEvent(Builder *b, struct fy_event *event)
   PetscFunctionReturn(0);
 }
 
+/* A tab that indents in this line, or one of the two behind it, which libfyaml tells of as of a text that goes on; its
+ * line, 0: there is none. */
+static int tab_near(const Builder *b, int line)
+{
+  const char *end = b->text + b->size;
+  int at = 1;
+  for (const char *p = b->text; p < end && at <= line + 2; ++at) {
+    while (p < end && *p == ' ') ++p;
+    if (p < end && *p == '\t' && at >= line) return at;
+    while (p < end && *p != '\n') ++p;
+    if (p < end) ++p;
+  }
+  return 0;
+}
+
 /* libfyaml's complaints, in our form and without its own follow-up ones. */
 static void take_syntax_errors(Builder *b, struct fy_diag *messages)
 {
@@ -273,9 +288,14 @@ static void take_syntax_errors(Builder *b, struct fy_diag *messages)
   struct fy_diag_error *error = fy_diag_errors_iterate(messages, &iterator);
   if (!error) fail(b, NULL, "this is not YAML");
   else {
-    const YamlNode place = {.place = {PetscMax(error->line, 1), PetscMax(error->column, 1), 1}};
+    YamlNode place = {.place = {PetscMax(error->line, 1), PetscMax(error->column, 1), 1}};
+    const int tab = tab_near(b, place.place.line);
     char message[400];
     snprintf(message, sizeof(message), "syntax: %.300s", error->msg ? error->msg : "this is not YAML");
+    if (tab && !strstr(message, "tab")) {
+      snprintf(message, sizeof(message), "syntax: a tab indents this line");
+      place.place = (YamlPlace){tab, 1, 1};
+    }
     message[strcspn(message, "\n")] = '\0';
     fail(b, &place, message);
     if (strstr(message, "tab")) diag_hint(b->diag, "indent with spaces, YAML does not allow tabs there");

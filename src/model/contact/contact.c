@@ -43,9 +43,12 @@ static PetscBool starts_alike(const Model *m)
 static ContactShare share_of_force(const Model *m)
 {
   const TimeWeights w = m->scheme->weights(&m->c->analysis, 1);
-  if (!contact_holds(m)) return (ContactShare){.mean = 1};
+  const PetscBool yields = materials_yield(m->c->n_materials, m->materials);
+  if (!contact_holds(m)) return (ContactShare){.mean = 1, .yields = yields, .moves = m->scheme->inertia};
   return (ContactShare){.inertia = PETSC_TRUE,
-                        .flows = materials_yield(m->c->n_materials, m->materials),
+                        .flows = yields,
+                        .yields = yields,
+                        .moves = PETSC_TRUE,
                         .mean = w.mean / (1 - w.lag),
                         .back = (1 - w.lag) * (1 - w.mean) / w.mean - w.lag,
                         .lag = w.lag};

@@ -74,7 +74,9 @@ typedef struct {
  * by `lag`. */
 typedef struct {
   PetscBool inertia;
-  PetscBool flows; /* may matter with inertia yield? Then gaps are measured by what it moves */
+  PetscBool flows;  /* may matter with inertia yield? Then gaps are measured by what it moves */
+  PetscBool moves;  /* has matter inertia, whatever the scheme remembers? */
+  PetscBool yields; /* may it at all? What it strains by is no millionth then */
   PetscReal mean, back, lag;
 } ContactShare;
 

@@ -10,8 +10,8 @@
 #define ALONG_FLOWS 2
 
 #define CLOSED 1e-5 /* of a cell: gaps and slips that remain of contact, */
-/* but no more than that share of what it moves by in the step, or its wall: a block that is squeezed by less than such a
- * gap would bear any force. Less than the last, of a cell, is round-off. */
+/* but no more than that share of what it moves by in the step, or its wall: a block that is squeezed by less than such
+ * a gap would bear any force. Less than the last, of a cell, is round-off. */
 #define MOVING 1e-3
 #define STANDING 1e-9
 #define TRIES 6      /* changes in which that is sought: a step must not fail for it */
@@ -171,11 +171,15 @@ static void stiffen(ContactPoint *c, PetscReal left)
   c->law.along *= c->law.penalty / before;
 }
 
-/* How far its body, or its wall, takes a contact point in the step, m. */
+/* How far its body, or its wall, takes a contact point in the step, m. In dynamics what rests with a gap would be
+ * shaken, and what flies has its force of its inertia: there walls count that are moved, and what is bonded. */
 static PetscReal travel_of(const Contact *s, const ContactPoint *c, const NodalScene *scene)
 {
+  const PetscBool driven = c->wall < s->n_walls && !contact_rigid(s, c);
   PetscReal own[3] = {0}, square[2] = {0};
   if (c->state == CONTACT_OPEN) return 0;
+  if (s->share.moves && c->law.kind != CONTACT_BONDED)
+    return driven ? PetscSqrtReal(PetscSqr(c->swept[0]) + PetscSqr(c->swept[1]) + PetscSqr(c->swept[2])) : 0;
   for (PetscInt e = c->first; e < c->first + c->own; ++e)
     for (PetscInt d = 0; d < s->dim; ++d) own[d] += scene->whole * s->N[e] * scene->du[s->node[e] * s->dim + d];
   for (int d = 0; d < 3; ++d) square[0] += own[d] * own[d], square[1] += c->swept[d] * c->swept[d];
@@ -186,8 +190,8 @@ static PetscReal travel_of(const Contact *s, const ContactPoint *c, const NodalS
 static PetscReal allowed(const Contact *s, PetscInt change, PetscReal moved, PetscReal travelled, PetscReal times)
 {
   const PetscReal closed = CLOSED * s->length;
-  if (change >= TRIES && !s->share.flows) return closed;
   if (s->share.flows) return PetscMax(closed, times * PetscMin(MOVED * moved, FLOWING * s->length));
+  if (s->share.yields || change >= TRIES || (s->share.moves && travelled == 0)) return closed;
   return PetscMax(STANDING * s->length, PetscMin(closed, MOVING * travelled));
 }
 
