@@ -241,10 +241,11 @@ static PetscErrorCode RestWork(const Model *m, PetscReal *work)
   PetscFunctionBeginUser;
   *work = 0;
   for (PetscInt k = 0; k < m->forces.n; ++k) {
-    if (m->forces.one[k].kind != &nodal_force_rest) continue;
+    const NodalForce *kind = m->forces.one[k].kind;
+    if (!kind->dead || !kind->apart) continue;
     PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &force));
     const NodalOutput out = {.force = force};
-    PetscCall(nodal_force_rest.assemble(m->forces.one[k].data, &scene, &out));
+    PetscCall(kind->assemble(m->forces.one[k].data, &scene, &out));
     for (PetscInt i = 0; i < owned; ++i) *work -= force[i] * m->nodes->du[i];
     PetscCall(PetscFree(force));
   }

@@ -56,7 +56,8 @@ typedef struct {
   const char *name, *help;
   /* the same whatever du is: gathered once in a step, and its norm scales the residual */
   PetscBool dead;
-  PetscBool apart; /* their work has an account of its own (model/contact/contact.c) */
+  /* their work has an account of its own (model/contact/contact.c; dead: that of what holds, model/measure/energy.c) */
+  PetscBool apart;
   /* Collective. *data stays NULL where the case asks for nothing of the kind; the user's mistakes
    * go to diag (NULL: sought before). */
   PetscErrorCode (*create)(const NodalScene *scene, Diag *diag, void **data);
@@ -91,7 +92,7 @@ typedef struct {
 } NodalForce;
 
 extern const NodalForce *const nodal_forces[]; /* ended by NULL */
-extern const NodalForce nodal_force_loads, nodal_force_pressures, nodal_force_rest;
+extern const NodalForce nodal_force_loads, nodal_force_pressures;
 
 /* Slots (n x n) of the pairs of n local nodes; PETSC_FALSE if the pattern lacks any. */
 static inline PetscBool nodal_find_slots(const System *system, PetscInt n, const PetscInt *node, PetscInt *slot)

@@ -142,6 +142,7 @@ const NodalForce nodal_force_rest = {
   .name = "rest",
   .help = "what held hardly reached nodes, while everything rests",
   .dead = PETSC_TRUE,
+  .apart = PETSC_TRUE,
   .create = Create,
   .destroy = Destroy,
   .begin = Begin,
