@@ -309,4 +309,27 @@ for extreme in young=6e19 density=1e-10; do
   awk -v y="$(last 3)" 'BEGIN { exit !(y < -0.04999999 && y > -0.05000001) }' || fail "$name: by $(last 3) m"
 done
 
+# --- a block of words forgotten, a sign lost, a number that no soil has ---
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, end: 0.1, step: 1e-3}
+grid: {box: {min: [0, 0], max: [4, 4]}, size: 0.5}
+bodies:
+  - {name: sand, shape: {box: {min: [1, 0], max: [3, 2]}}, material: sand}
+materials:
+  sand: {law: mohr-coulomb, density: 1600, young: 1e7, poisson: 0.3, friction_angle: 33, cohesion: 0}
+boundary:
+  - {on: {y: 0}, fix: [x, y]}
+END
+warned "nothing that acts" "nothing acts on what is here" 'weight is `loads: {gravity: [0, -9.81]}`' --
+warned "a velocity" -- --set 'bodies[0].velocity=[0, 1]'
+warned "weight" -- --set 'loads={gravity: [0, -9.81]}'
+warned "weight upwards" "gravity points along +y, upwards, where nothing is held" 'downwards is `gravity: [0, -9.81]`' -- \
+  --set 'loads={gravity: [0, 9.81]}'
+warned "heights downwards" -- --set 'loads={gravity: [0, 9.81]}' --set 'boundary=[{on: {boundary: top}, fix: [x, y]}]' \
+  --set 'bodies[0].shape={box: {min: [1, 2], max: [3, 4]}}'
+warned "ground that leans" "warning: k0 of 8: the ground would press sideways 8 times as much as it weighs" -- \
+  --set 'loads={gravity: [0, -9.81]}' --set 'bodies[0].k0=8'
+
 finish

@@ -109,44 +109,6 @@ static void advise_locking(const Model *m, const BodySpec *body, PetscInt i, Dia
   hint_unlocked(m, material, diag);
 }
 
-/* --- which way is down? --- */
-static const char *const sides[3][2] = {{"left", "right"}, {"bottom", "top"}, {"front", "back"}};
-
-/* Does the entry hold that component of nodes on that side of the box? Of a shape it is
- * believed. */
-static PetscBool holds_side(const Grid *grid, const MotionSpec *entry, PetscInt axis, int high)
-{
-  const PetscReal at = high ? grid->max[axis] : grid->min[axis], slack = 1e-9 * (grid->max[axis] - grid->min[axis]);
-  if (!entry->component[axis] && entry->kind != MOTION_ROTATION) return PETSC_FALSE;
-  if (entry->on.boundary) return !strcmp(entry->on.boundary, sides[axis][high]);
-  if (!entry->on.has[axis]) return PETSC_TRUE;
-  return at >= entry->on.min[axis] - slack && at <= entry->on.max[axis] + slack;
-}
-
-/* A floor by its name, while gravity points elsewhere and nothing is held there. */
-static void advise_floor(const Model *m, Diag *diag)
-{
-  const Case *c = m->c;
-  const PetscReal *g = c->gravity;
-  PetscInt axis = 0;
-  char path[64];
-  for (PetscInt d = 1; d < 3; ++d)
-    if (PetscAbsReal(g[d]) > PetscAbsReal(g[axis])) axis = d;
-  const int high = g[axis] > 0;
-  if (m->dim < 3 || !grid_is_aligned(m->grid) || g[axis] == 0 || PetscAbsReal(g[1]) > 1e-6 * PetscAbsReal(g[axis]))
-    return;
-  for (PetscInt k = 0; k < c->n_boundary; ++k)
-    if (holds_side(m->grid, &c->boundary[k], axis, high)) return;
-  for (PetscInt k = 0; k < c->n_boundary; ++k) {
-    if (!c->boundary[k].on.boundary || strcmp(c->boundary[k].on.boundary, "bottom")) continue;
-    PetscSNPrintf(path, sizeof path, "boundary[%d].on.boundary", (int)k);
-    diag_warning(diag, path,
-                 "'bottom' is the side of the lowest y, but gravity points along %c%c, where nothing is held",
-                 high ? '+' : '-', "xyz"[axis]);
-    diag_hint(diag, "there the side is called '%s'; or let y be vertical: gravity: [0, -9.81, 0]", sides[axis][high]);
-  }
-}
-
 /* --- walls that nothing meets --- */
 /* " from (0, 0) to (1, 2) m", or nothing of a wall without end. */
 static const char *extent_of(PetscInt dim, const PetscReal *min, const PetscReal *max, char text[192])
@@ -223,7 +185,8 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
   PetscCall(AdviseSharing(m, diag));
   PetscCall(AdviseThin(m, diag));
   PetscCall(AdvisePulses(m, diag));
-  advise_floor(m, diag);
+  advise_down(m, diag);
+  advise_still(m, diag);
   advise_dilatancy(m, diag);
   for (PetscInt k = 0; k < m->c->n_measures; ++k) PetscCall(AdviseReaction(m, m->c->measures + k, diag));
   PetscFunctionReturn(0);

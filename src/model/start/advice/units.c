@@ -6,6 +6,7 @@
 #define NO_COEFFICIENT 3     /* of friction: 72 degrees */
 #define FASTEST 3e4          /* m/s, of waves: diamond has 1.8e4 */
 #define PRESSED_TO_NOTHING 4 /* of its modulus, by its own weight */
+#define LEANING 4            /* k0: passive pressure at 37 degrees */
 #define DEGREES (180 / PETSC_PI)
 
 static void advise_material(const Model *m, PetscInt i, Diag *diag)
@@ -34,6 +35,17 @@ static void advise_friction(const char *list, PetscInt k, PetscReal friction, Di
   diag_warning(diag, path, "a coefficient of friction of %g is an angle of %.3g degrees", (double)friction,
                (double)(PetscAtanReal(friction) * DEGREES));
   diag_hint(diag, "an angle is `friction_angle`, in degrees; what must not slide is `contact: stick`");
+}
+
+static void advise_k0(const Model *m, PetscInt b, Diag *diag)
+{
+  const BodySpec *body = m->c->bodies + b;
+  char path[64];
+  if (!body->has_k0 || body->k0 <= LEANING) return;
+  snprintf(path, sizeof path, "bodies[%d].k0", (int)b);
+  diag_warning(diag, path, "k0 of %g: the ground would press sideways %g times as much as it weighs", (double)body->k0,
+               (double)body->k0);
+  diag_hint(diag, "0.4 to 1 is usual, 1 to 3 what was much loaded once");
 }
 
 /* Heights of bodies along gravity, m, over all ranks: 0 of a body without points. */
@@ -94,6 +106,7 @@ PetscErrorCode AdviseUnits(const Model *m, Diag *diag)
   for (PetscInt k = 0; k < m->c->n_interfaces; ++k)
     if (m->c->interfaces[k].contact == CONTACT_FRICTION)
       advise_friction("interfaces", k, m->c->interfaces[k].friction, diag);
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b) advise_k0(m, b, diag);
   PetscCall(AdviseWeight(m, diag));
   PetscFunctionReturn(0);
 }
