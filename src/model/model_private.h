@@ -267,6 +267,8 @@ PetscErrorCode LimitWatch(Model *model, PetscReal dt);
 /* Collective. Add to the reason of a static run that gives up that it may be at a limit load, if it
  * looks like one. */
 PetscErrorCode LimitDescribe(const Model *model, StepReport *report);
+/* contact/slides.c. The same of a body that slides on all that it touches. */
+PetscErrorCode ContactDescribe(const Model *model, StepReport *report);
 /* Collective. Warnings of what a case asks for and its user hardly means: start/advice.c. */
 PetscErrorCode ModelAdvise(const Model *model, Diag *diag);
 /* Collective. The same of layers that share their cells, where strength is sought: start/thin.c. */

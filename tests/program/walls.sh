@@ -177,6 +177,34 @@ for way in "rubs 1" "rubs 2" "sticks 1"; do
   awk -F, -v most=$([ $law = stick ] && echo 0.05 || echo 0.02) 'NR > 1 { if ($3 < -0.002 * 60 || $3 > most * $5 + 0.1 || $4 < -0.005 * 60) bad = 1 } END { exit bad || $6 < 95.999 || $6 > 96.001 }' runs_out/history.csv ||
     fail "$name: $(tail -n 1 runs_out/history.csv)"
 done
+# A sample between two platens slides on all that holds it: its place is known by symmetry alone, and half of it, which
+# is held in the middle, bears half. Where friction cannot hold it at all, the message says what goes where.
+cat >platens.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, end: 1, step: 0.25}
+grid: {box: {min: [-2, -1], max: [2, 2]}, size: 0.25}
+bodies:
+  - {name: sample, shape: {box: {min: [-1, 0], max: [1, 1]}}, material: soft}
+materials:
+  soft: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}
+walls:
+  - {name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, friction: 0.01}
+  - {name: press, shape: {half-space: {point: [0, 1], normal: [0, -1]}}, friction: 0.01, motion: [{displacement: {y: -0.01}}]}
+measures: {bears: {wall_force: y, of: {wall: press}}}
+END
+half="bodies[0].shape.box.min=[0, 0]"
+for way in "mpm 1" "mpm 3" "fem 2"; do
+  set -- $way
+  expect "half between platens, $way" 0 "$talus" run platens.yaml --out half --force --quiet --set method=$1 --set "$half" \
+    --set 'boundary=[{on: {x: 0}, fix: [x]}]'
+  expect "between platens, $way" 0 on_ranks $2 "$talus" run platens.yaml --out whole --force --quiet --set method=$1
+  [ "$(sed -n '$s/,.*//p' whole/history.csv),$(tail -n 1 whole/history.csv | cut -d, -f2)" = 1,4 ] || fail "$name: $(tail -n 1 whole/history.csv)"
+  awk -v a="$(tail -n 1 whole/history.csv | cut -d, -f3)" -v b="$(tail -n 1 half/history.csv | cut -d, -f3)" \
+    'BEGIN { d = a / (2 * b) - 1; exit !(a < -12000 && d < 1e-7 && d > -1e-7) }' || fail "$name: $(tail -n 1 whole/history.csv half/history.csv)"
+done
+expect "beyond friction" 1 "$talus" run platens.yaml --out beyond --force --quiet --set 'loads={gravity: [9.81, 0]}'
+says err.txt "Friction may be overcome: 'sample' slides at"
 # A wall at the edge of the grid is what holds there; numbers in other units are told of.
 sed 's/^grid.*/grid: {box: {min: [0, -0.01], max: [1.2, 0.8]}, size: 0.01}/; s/^boundary.*//; s/^walls: \[/&{name: back, shape: {half-space: {point: [0, 0], normal: [1, 0]}}}, /' runs_out.yaml >units.yaml
 expect "a wall at the edge" 0 "$talus" check units.yaml

@@ -40,8 +40,7 @@ static void row_of(const Model *m, const Group *g, PetscInt node, PetscInt axis,
                    PetscReal row[RIGID])
 {
   const PetscReal *x = m->grid->x + node * m->dim;
-  PetscReal e[3] = {0, 0, 0}, r[3] = {0, 0, 0};
-  e[axis] = 1;
+  PetscReal e[3] = {axis == 0, axis == 1, axis == 2}, r[3] = {0, 0, 0};
   if (w) frame_turn(m->dim, w, e);
   for (PetscInt d = 0; d < m->dim; ++d) r[d] = (x[d] - g->centre[d]) / g->size;
   const PetscReal turns[3] = {r[1] * e[2] - r[2] * e[1], r[2] * e[0] - r[0] * e[2], r[0] * e[1] - r[1] * e[0]};

@@ -147,6 +147,7 @@ PetscErrorCode SolveStep(Model *m, PetscReal *dt, StepReport *report)
            "Newton did not converge with a step of %g s (%s), and half of it is less than analysis.smallest = %g s",
            (double)*dt, report->newton.reason, (double)smallest);
   PetscCall(LimitDescribe(m, report));
+  PetscCall(ContactDescribe(m, report));
   PetscFunctionReturn(0);
 }
 

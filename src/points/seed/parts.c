@@ -122,10 +122,10 @@ static PetscBool is_inside(const Measure *m, const PetscReal *xi)
   return shape_contains(m->shape, m->dim, position, m->slack);
 }
 
-static void centre_of(PetscInt dim, PetscReal corner[4][3], PetscReal *centre)
+static void centre_of(PetscInt dim, PetscReal corner[4][3], PetscReal centre[3])
 {
+  for (PetscInt d = 0; d < 3; ++d) centre[d] = 0;
   for (PetscInt d = 0; d < dim; ++d) {
-    centre[d] = 0;
     for (PetscInt i = 0; i <= dim; ++i) centre[d] += corner[i][d] / (PetscReal)(dim + 1);
   }
 }

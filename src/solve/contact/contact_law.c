@@ -40,14 +40,19 @@ PetscReal contact_most(const ContactLaw *law, PetscReal pressure)
   return pressure > 0 ? bound_of(law, pressure, &slope) : 0;
 }
 
+/* Stiffness along the way of what slides, over what sticks: the law has none, and a body that slides on all that holds
+ * it, as a sample that widens between two platens, has nothing that tells where it stands. Newton's method is told a
+ * trace of it; forces, by which it has converged or not, know none. */
+#define TRACE 1e-6
+
 /* Where it slides along `way`, with a force `bound` that was to be `size`. */
 static void slide(const ContactLaw *law, const PetscReal n[3], const PetscReal way[3], PetscReal bound, PetscReal slope,
                   PetscReal size, PetscReal *K)
 {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      K[3 * i + j] +=
-        law->penalty * slope * way[i] * n[j] + law->along * bound / size * ((i == j) - n[i] * n[j] - way[i] * way[j]);
+      K[3 * i + j] += law->penalty * slope * way[i] * n[j] + TRACE * law->along * way[i] * way[j] +
+                      law->along * bound / size * ((i == j) - n[i] * n[j] - way[i] * way[j]);
 }
 
 ContactState contact_law(const ContactLaw *law, const WallPlace *place, const PetscReal slip[3],

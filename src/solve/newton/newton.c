@@ -248,6 +248,7 @@ static PetscErrorCode Explain(Newton *n, SNESConvergedReason reason, NewtonRepor
 
   PetscFunctionBeginUser;
   if (!loose && gone && singular) PetscCall(NewtonLooseReason(n, &loose));
+  if (!loose && gone && reason == SNES_DIVERGED_FUNCTION_DOMAIN) PetscCall(NewtonFarReason(n, &loose));
   report->reason = loose ? loose : newton_reason(reason, report->status);
   PetscFunctionReturn(0);
 }

@@ -1,10 +1,14 @@
 /* What nothing resists: unknowns whose diagonal in the tangent of statics is empty, as where every point around carries
- * grains that are apart. A factorisation says no more than that it failed. */
+ * grains that are apart, and bodies that all but nothing holds. A factorisation says no more than that it failed, or
+ * moves them by kilometres. */
 #include "solve/newton/newton_private.h"
 #include <limits.h>
 
 /* Of the largest diagonal: less is none. */
 #define NO_STIFFNESS 1e-14
+/* Of the largest increment: as much moves with it. */
+#define AS_FAR 0.9
+#define PLACE 96 /* characters of a place */
 
 /* Diagonals of the tangent at local nodes (n_nodes x dim), and the largest of those that are free. */
 static PetscErrorCode Diagonals(const Newton *n, PetscReal *diagonal, PetscReal *largest)
@@ -65,6 +69,13 @@ static PetscErrorCode FindPoint(const Newton *n, const unsigned char *loose, Pet
   PetscFunctionReturn(0);
 }
 
+static const char *place_text(const Newton *n, const PetscReal x[3], char text[PLACE])
+{
+  snprintf(text, PLACE, n->problem->grid->dim == 2 ? "(%.4g, %.4g)" : "(%.4g, %.4g, %.4g)", (double)x[0], (double)x[1],
+           (double)x[2]);
+  return text;
+}
+
 PetscErrorCode NewtonLooseReason(Newton *n, const char **reason)
 {
   const StepProblem *p = n->problem;
@@ -72,7 +83,7 @@ PetscErrorCode NewtonLooseReason(Newton *n, const char **reason)
   PetscInt counts[2] = {0, p->system->n_active}, all[2], body;
   unsigned char *loose;
   PetscBool found = PETSC_FALSE;
-  char place[96];
+  char place[PLACE];
 
   PetscFunctionBeginUser;
   *reason = NULL;
@@ -85,12 +96,59 @@ PetscErrorCode NewtonLooseReason(Newton *n, const char **reason)
   if (all[0]) PetscCall(FindPoint(n, loose, &body, x, &found));
   PetscCall(PetscFree2(diagonal, loose));
   if (!found) PetscFunctionReturn(0);
-  snprintf(place, sizeof place, p->grid->dim == 2 ? "(%.4g, %.4g)" : "(%.4g, %.4g, %.4g)", (double)x[0], (double)x[1],
-           (double)x[2]);
   snprintf(n->loose, sizeof n->loose,
            "nothing resists at %d of %d nodes, as around %s m in '%s': it has no stiffness there, as grains that are "
            "apart; hold it together, give it some cohesion, or let it move (type: dynamic)",
-           (int)all[0], (int)all[1], place, p->scene.c->bodies[body].name);
+           (int)all[0], (int)all[1], place_text(n, x, place), p->scene.c->bodies[body].name);
+  *reason = n->loose;
+  PetscFunctionReturn(0);
+}
+
+/* Nodes whose increment is among the largest, and the axis of that. */
+static PetscErrorCode FarthestNodes(const Newton *n, unsigned char *far, int *axis)
+{
+  const StepProblem *p = n->problem;
+  const PetscInt dim = p->grid->dim;
+  PetscReal *increment, most[3] = {0, 0, 0};
+  Vec v;
+
+  PetscFunctionBeginUser;
+  PetscCall(SNESGetSolutionUpdate(n->snes, &v));
+  PetscCall(PetscCalloc1(p->grid->n_nodes * dim, &increment));
+  PetscCall(SystemToNodes(p->system, p->grid, v, 0, dim, increment));
+  for (PetscInt i = 0; i < p->grid->n_nodes * dim; ++i)
+    most[i % dim] = PetscMax(most[i % dim], PetscAbsReal(increment[i]));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, most, 3, MPIU_REAL, MPIU_MAX, n->comm));
+  *axis = most[2] > PetscMax(most[0], most[1]) ? 2 : most[1] > most[0];
+  for (PetscInt i = 0; i < p->grid->n_nodes; ++i)
+    far[i] = PetscAbsReal(increment[i * dim + *axis]) >= AS_FAR * most[*axis];
+  PetscCall(PetscFree(increment));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode NewtonFarReason(Newton *n, const char **reason)
+{
+  const StepProblem *p = n->problem;
+  unsigned char *far;
+  PetscInt body;
+  PetscReal x[3];
+  PetscBool found = PETSC_FALSE;
+  char place[PLACE];
+  int axis = 0;
+
+  PetscFunctionBeginUser;
+  *reason = NULL;
+  if (p->system->form == SYSTEM_BLOCKS) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(p->grid->n_nodes, &far));
+  PetscCall(FarthestNodes(n, far, &axis));
+  PetscCall(FindPoint(n, far, &body, x, &found));
+  PetscCall(PetscFree(far));
+  if (!found) PetscFunctionReturn(0);
+  snprintf(
+    n->loose, sizeof n->loose,
+    "an increment of a thousand times the grid's size, in %c of '%s' around %s m: next to nothing holds it there%s",
+    "xyz"[axis], p -> scene.c->bodies[body].name, place_text(n, x, place),
+    p->scene.contact ? "; friction that is overcome and walls that it leaves do not" : "");
   *reason = n->loose;
   PetscFunctionReturn(0);
 }

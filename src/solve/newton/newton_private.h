@@ -118,6 +118,8 @@ const char *newton_rigid_reason(Newton *n);
 
 /* newton_loose.c. The same, if it is that nothing resists at some nodes in statics. Collective. */
 PetscErrorCode NewtonLooseReason(Newton *n, const char **reason);
+/* The same, of an increment that is out of all bounds: what it moves, and where. Collective. */
+PetscErrorCode NewtonFarReason(Newton *n, const char **reason);
 
 /* newton_converge.c. The norm below which a residual has converged, N. */
 PetscReal newton_tolerance(const Newton *n);
