@@ -177,6 +177,27 @@ for way in "rubs 1" "rubs 2" "sticks 1"; do
   awk -F, -v most=$([ $law = stick ] && echo 0.05 || echo 0.02) 'NR > 1 { if ($3 < -0.002 * 60 || $3 > most * $5 + 0.1 || $4 < -0.005 * 60) bad = 1 } END { exit bad || $6 < 95.999 || $6 > 96.001 }' runs_out/history.csv ||
     fail "$name: $(tail -n 1 runs_out/history.csv)"
 done
+# A block that is held below and bonded above, at rest or going along with its wall: nothing pushes, in any basis, and
+# where nodes are held that no material reaches.
+cat >at_rest.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+basis: {gimp: {}}
+analysis: {type: dynamic, end: 0.01, step: 1e-3}
+grid: {box: {min: [0, 0], max: [0.3, 0.5]}, size: 0.05}
+bodies:
+  - {name: block, shape: {box: {min: [0, 0], max: [0.2, 0.4]}}, material: soft, velocity: [0.5, 0]}
+materials:
+  soft: {law: neo-hookean, density: 100, young: 1e6, poisson: 0}
+boundary: [{name: bottom, on: {y: 0}, fix: [y]}]
+walls: [{name: top, shape: {half-space: {point: [0, 0.4], normal: [0, -1]}}, contact: bonded, motion: [{velocity: {x: 0.5}}]}]
+measures: {bottom: {reaction: y, of: {boundary: bottom}}, top: {wall_force: y, of: {wall: top}}, external: {energy: external}, transfer: {energy: transfer}}
+END
+for way in "gimp 1" "gimp 2" "bspline 1" "cell 3"; do
+  set -- $way
+  expect "at rest, $way" 0 on_ranks $2 "$talus" run at_rest.yaml --out at_rest --force --quiet --set "basis={$1: {}}"
+  awk -F, 'NR > 1 { for (k = 3; k <= 6; ++k) if ($k > 1e-4 || $k < -1e-4) exit 1 }' at_rest/history.csv || fail "$name: $(tail -n 1 at_rest/history.csv)"
+done
 # A sample between two platens slides on all that holds it: its place is known by symmetry alone, and half of it, which
 # is held in the middle, bears half. Where friction cannot hold it at all, the message says what goes where.
 cat >platens.yaml <<'END'
@@ -203,6 +224,9 @@ for way in "mpm 1" "mpm 3" "fem 2"; do
   awk -v a="$(tail -n 1 whole/history.csv | cut -d, -f3)" -v b="$(tail -n 1 half/history.csv | cut -d, -f3)" \
     'BEGIN { d = a / (2 * b) - 1; exit !(a < -12000 && d < 1e-7 && d > -1e-7) }' || fail "$name: $(tail -n 1 whole/history.csv half/history.csv)"
 done
+expect "smooth platens" 2 "$talus" check platens.yaml --set walls[0].friction=0 --set walls[1].friction=0
+says err.txt "nothing holds 'sample' in x" "if its loads are in balance: friction: 1e-5 on what it touches"
+expect "all but smooth" 0 "$talus" run platens.yaml --out smooth --force --quiet --set walls[0].friction=1e-5 --set walls[1].friction=1e-5
 expect "beyond friction" 1 "$talus" run platens.yaml --out beyond --force --quiet --set 'loads={gravity: [9.81, 0]}'
 says err.txt "Friction may be overcome: 'sample' slides at"
 # A wall at the edge of the grid is what holds there; numbers in other units are told of.

@@ -124,6 +124,7 @@ PetscErrorCode MassSolveCreate(const Discretisation *s, MassSolve *c)
     const PetscReal inverse = c->product[node] > 1e-300 ? 1 / c->product[node] : 0;
     for (PetscInt i = node * c->width; inverse > 0 && i < (node + 1) * c->width; ++i) c->inverse[i] = inverse;
   }
+  PetscCall(PetscArrayzero(c->product, c->size)); /* products clear it only where points reach */
   PetscCall(MassSolveReach(c));
   PetscFunctionReturn(0);
 }

@@ -143,8 +143,8 @@ static PetscErrorCode TellLoose(const Model *m, PetscBool ends, Diag *diag)
       diag_error(diag, path, "nothing holds '%s' in %s: a static analysis has no answer", name, directions);
       diag_hint(diag,
                 "fix a boundary that the body touches in %s, or let it move: analysis: {type: dynamic}; if its loads "
-                "are in balance: analysis: {unheld: hold}",
-                directions);
+                "are in balance: %s",
+                directions, m->contact ? "friction: 1e-5 on what it touches" : "analysis: {unheld: hold}");
     }
   }
   PetscCall(PetscFree(held));
