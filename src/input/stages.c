@@ -76,6 +76,12 @@ static const char *name_of(const YamlNode *entry)
   return name && name->kind == YAML_SCALAR && !yaml_is_null(name) ? name->text : NULL;
 }
 
+static PetscBool is_absent(const YamlNode *entry)
+{
+  const YamlNode *absent = yaml_find(entry, "absent");
+  return absent && absent->text && !strcmp(absent->text, "true");
+}
+
 /* A list of things, not of numbers. */
 static PetscBool has_names(const YamlNode *list)
 {
@@ -125,8 +131,7 @@ static PetscErrorCode TellMissing(const Layer *l, const YamlNode *list, const Ya
 /* tip: {absent: true} */
 static PetscBool drops(const YamlNode *list, const YamlNode *entry)
 {
-  const YamlNode *absent = entry->n == 1 ? yaml_find(entry, "absent") : NULL;
-  return list->key && !strcmp(list->key, "measures") && absent && absent->text && !strcmp(absent->text, "true");
+  return list->key && !strcmp(list->key, "measures") && entry->n == 1 && is_absent(entry);
 }
 
 static PetscErrorCode Lay(const Layer *l, YamlNode *under, const YamlNode *over);
@@ -166,6 +171,17 @@ static YamlNode *find_entry(const YamlNode *list, const YamlNode *entry)
   return NULL;
 }
 
+/* What comes begins with the stage that brings it, whatever named it before: its times count from there. */
+static PetscErrorCode LayOnEntry(const Layer *l, YamlNode *was, const YamlNode *entry)
+{
+  const PetscBool comes = is_absent(was);
+
+  PetscFunctionBeginUser;
+  PetscCall(LayKeys(l, was, entry, NULL));
+  if (comes && !is_absent(was)) set_stage(was, l->stage);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode LayEntries(const Layer *l, YamlNode *list, const YamlNode *over)
 {
   const PetscBool by_keys = list->key && !strcmp(list->key, "bodies");
@@ -180,7 +196,7 @@ static PetscErrorCode LayEntries(const Layer *l, YamlNode *list, const YamlNode 
       PetscCall(Clone(l, entry, l->stage, &copy));
       PetscCall(YamlNodeAppend(list, copy));
     } else if (yaml_equal(was, entry)) continue;
-    else if (by_keys || says_presence_only(entry)) PetscCall(LayKeys(l, was, entry, NULL));
+    else if (by_keys || says_presence_only(entry)) PetscCall(LayOnEntry(l, was, entry));
     else PetscCall(Replace(l, was, entry));
   }
   PetscFunctionReturn(0);

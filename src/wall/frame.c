@@ -32,7 +32,7 @@ void frame_at(const Case *c, const WallSpec *wall, PetscReal t, Frame *frame)
     const MotionSpec *m = wall->motions + k;
     if (m->kind == MOTION_ROTATION) turn(m, m->rate * amplitude_integral(&m->amplitude, t, 1), frame);
     else
-      for (PetscInt d = 0; d < 3; ++d) frame->T[d] += motion_increment(c, m, frame->T, d, 0, t);
+      for (PetscInt d = 0; d < 3; ++d) frame->T[d] += motion_increment(c, m, frame->T, d, m->amplitude.origin, t);
   }
 }
 

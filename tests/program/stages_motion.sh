@@ -149,4 +149,38 @@ done
 sed 's/^  - {name: clay.*/&\n  - {name: more, shape: {box: {min: [0, 2], max: [2, 2.5]}}, material: clay}/' later.yaml >more.yaml
 expect "clay that comes" 2 "$talus" run more.yaml --out more --set method=mpm
 says err.txt "'more' is of modified-cam-clay, which has no state without stress"
+
+# What is named at the top and comes with a stage moves from that stage on, wherever its words stand: by 0.01 of a column
+# without Poisson's ratio, mu (l - 1 / l) = -100505 N. It comes, goes and comes back.
+cat >late.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 2}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.25}
+bodies: [{name: column, shape: {box: {min: [0, 0], max: [1, 1]}}, material: soft}]
+materials: {soft: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0}}
+boundary:
+  - {name: bottom, on: {boundary: bottom}, fix: [y]}
+  - {name: left, on: {boundary: left}, fix: [x]}
+  - {name: top, on: {boundary: top}, displacement: {y: -0.01}, absent: true}
+walls: [{name: press, shape: {box: {min: [-1, 1], max: [2, 2]}}, motion: [{velocity: {y: -0.01}}], absent: true}]
+measures: {top: {reaction: y, of: {boundary: top}}, press: {wall_force: y, of: {wall: press}}, force: {formula: top + press}}
+stages:
+  - {name: nothing}
+  - {name: nothing-else}
+  - {name: comes, boundary: [{name: top, absent: false}]}
+  - {name: goes, boundary: [{name: top, absent: true}]}
+  - {name: comes-again, boundary: [{name: top, absent: false}]}
+END
+bears() { # the force at the ends of stages 3 and 5
+  awk -F, '$2 == 6 || $2 == 10 { n += 1; if (!($6 > -100510 && $6 < -100450)) bad = 1 } END { exit bad || n != 2 }' late/history.csv ||
+    fail "$name: $(cat late/history.csv)"
+}
+for way in "fem 1" "fem 2" "mpm 3"; do
+  set -- $way
+  [ $1 = mpm ] || { expect "a side that comes, on $2" 0 on_ranks $2 "$talus" run late.yaml --out late --force --quiet && bears; }
+  sed 's/boundary: \[{name: top/walls: [{name: press/' late.yaml >late_wall.yaml
+  expect "a wall that comes, $1 on $2" 0 on_ranks $2 "$talus" run late_wall.yaml --out late --force --quiet --set method=$1
+  bears
+done
 finish

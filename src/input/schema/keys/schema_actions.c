@@ -31,8 +31,9 @@ static const SchemaEntry motion_entries[] = {
       "components that do not move: [x], [x, y], ...; or [normal]: nodes slide along the boundary that they stand in, "
       "inclined or curved, and do not leave it; where two such walls meet at more than 40 degrees they keep to both",
       TAG(MOTION_FIXED), AT(MotionSpec, component)),
-  KEY("displacement", TABLE, NULL, "prescribed displacement from the start", .table = &schema_components,
-      TAG(MOTION_DISPLACEMENT)),
+  KEY("displacement", TABLE, NULL,
+      "prescribed displacement from the start, or from that of the stage that brings the entry",
+      .table = &schema_components, TAG(MOTION_DISPLACEMENT)),
   KEY("velocity", TABLE, NULL, "prescribed velocity", .table = &schema_components, TAG(MOTION_VELOCITY)),
   KEY("rotation", TABLE, NULL, "rigid rotation about a point", .table = &schema_rotation, TAG(MOTION_ROTATION), TURNS),
   KEY("amplitude", AMPLITUDE, NULL, "factor over time: [[time, factor], ...], linear between",

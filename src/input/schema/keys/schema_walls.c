@@ -23,8 +23,8 @@ static const SchemaWord contact_words[] = {
 };
 
 static const SchemaEntry wall_motion_entries[] = {
-  KEY("displacement", TABLE, NULL, "displacement from the start", .table = &schema_components,
-      TAG(MOTION_DISPLACEMENT)),
+  KEY("displacement", TABLE, NULL, "displacement from the start, or from that of the stage that brings the wall",
+      .table = &schema_components, TAG(MOTION_DISPLACEMENT)),
   KEY("velocity", TABLE, NULL, "velocity", .table = &schema_components, TAG(MOTION_VELOCITY)),
   KEY("rotation", TABLE, NULL, "rotation about a point that stays", .table = &schema_rotation, TAG(MOTION_ROTATION),
       TURNS),
