@@ -332,4 +332,31 @@ warned "heights downwards" -- --set 'loads={gravity: [0, 9.81]}' --set 'boundary
 warned "ground that leans" "warning: k0 of 8: the ground would press sideways 8 times as much as it weighs" -- \
   --set 'loads={gravity: [0, -9.81]}' --set 'bodies[0].k0=8'
 
+# --- what prescribed nodes of a restored grid push passes them; a wall that does the same bears the exact force ---
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 10}
+grid: {box: {min: [-1, 0], max: [4, 2]}, size: 0.5}
+bodies:
+  - {name: bar, shape: {box: {min: [0, 0], max: [4, 1]}}, material: soft}
+materials:
+  soft: {law: neo-hookean, density: 1000, young: 2e6, poisson: 0}
+boundary:
+  - {on: {boundary: right}, fix: [x]}
+  - {on: {boundary: bottom}, fix: [y]}
+  - {on: {x: 0}, displacement: {x: 0.4}}
+END
+warned "nodes that stay" "case.yaml:12:18: warning: material is moved by 0.8 cells along x, and the nodes that move it stay where they are" \
+  "contact: bonded or stick" --
+warned "a small way" -- --set boundary[2].displacement.x=0.04
+warned "fem" -- --set method=fem --set 'grid.box={min: [0, 0], max: [4, 1]}'
+warned "a place that goes along" -- --set boundary[2].moves=true --set boundary[2].on.x='[-0.5, 0.5]'
+warned "a plane that goes along" "this place has no depth along x" -- --set boundary[2].moves=true
+expect "a wall for it" 0 "$talus" run case.yaml --out run --force --quiet \
+  --set 'boundary=[{on: {boundary: right}, fix: [x]}, {on: {boundary: bottom}, fix: [y]}]' \
+  --set 'walls=[{name: press, shape: {half-space: {point: [0, 0], normal: [1, 0]}}, contact: stick, motion: [{displacement: {x: 0.4}}]}]' \
+  --set 'measures={press: {wall_force: x, of: {wall: press}}}'
+awk -v f="$(last 3)" 'BEGIN { exit !(f > 211100 && f < 211122) }' || fail "$name: $(last 3) N" # mu (1 / l - l), l = 0.9
+
 finish

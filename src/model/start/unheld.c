@@ -41,7 +41,7 @@ static void row_of(const Model *m, const Group *g, PetscInt node, PetscInt axis,
 {
   const PetscReal *x = m->grid->x + node * m->dim;
   PetscReal e[3] = {axis == 0, axis == 1, axis == 2}, r[3] = {0, 0, 0};
-  if (w) frame_turn(m->dim, w, e);
+  if (w) frame_turn(m->dim == 2 ? 2 : 3, w, e); /* compilers see that no more is read than is set */
   for (PetscInt d = 0; d < m->dim; ++d) r[d] = (x[d] - g->centre[d]) / g->size;
   const PetscReal turns[3] = {r[1] * e[2] - r[2] * e[1], r[2] * e[0] - r[0] * e[2], r[0] * e[1] - r[1] * e[0]};
   for (PetscInt d = 0; d < g->n && d < m->dim; ++d) row[d] = g->n == 1 ? e[1] : e[d];

@@ -115,6 +115,7 @@ PetscErrorCode LossesLogEnd(const Model *m, RunDir *dir)
 static void warn_of_transfer(const Model *m, Diag *diag)
 {
   const PetscReal share = share_of_input(m, m->transfer_energy);
+  if (!m->method->restores_grid && m->c->staged && case_is_static(&m->c->analysis)) return; /* of what went away */
   if (PetscAbsReal(share) <= TRANSFER_ALLOWED) return;
   diag_warning(diag, NULL,
                "the transfer between points and grid %s %.2g %% of the energy that came in (%.4g of %.4g J): an energy "
