@@ -117,7 +117,8 @@ END
 # stands: with 7 % more than 1, found from 1 upwards
 stands() {
   awk -F, 'END { exit !($3 > 1.05 && $3 < 1.1) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
-  lacks out.txt "warning"
+  lacks out.txt "lost its way"
+  says err.txt "soil that dilates comes out too strong where the points of a cell share its volume"
 }
 for ranks in 1 2 3; do
   expect "a soft slope on $ranks" 0 on_ranks $ranks "$talus" run slope.yaml --out run --force --set formulation=mean-dilatation
@@ -129,6 +130,15 @@ says out.txt "formulation = mean-dilatation, the default with a dilatancy angle"
 expect "with dilatancy, mixed" 0 "$talus" run slope.yaml --out run --force --set formulation=mixed --set materials.soil.poisson=0.49 --set analysis.reduction.tolerance=0.05
 says err.txt "formulation=mixed: warning: with a dilatancy angle" "take \`formulation: mean-dilatation\`, or"
 says out.txt "formulation = mixed" "warning = Newton's method lost its way before anything slid" "factor of safety = 0.5"
+
+# A vertical cut with a factor of 1 (Chen 1975: gamma H / c = 5.51): squares of one point do not lock
+sed 's/^grid.*/grid: {box: {min: [-2.5, -0.5], max: [1, 1]}, size: 0.1}/; s/polygon: .*]]}/polygon: [[-2.5, -0.5], [1, -0.5], [1, 0], [0, 0], [0, 1], [-2.5, 1]]}, points_per_cell: 1/
+  s/young: 5e7/young: 1e9/; s/19249/3629.8/' slope.yaml >cut.yaml
+expect "a cut that dilates" 0 "$talus" run cut.yaml --out run --force --set method=fem --set formulation=displacement
+awk -F, 'END { exit !($3 > 1.01 && $3 < 1.04) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
+lacks err.txt "locks" "soil that dilates"
+expect "a cut of which cells share" 0 "$talus" check cut.yaml --set method=fem --set bodies[0].points_per_cell=4
+says err.txt "soil that dilates comes out too strong"
 
 # Resumed anywhere: the same bits; and its end is an end
 expect "whole" 0 "$talus" run block.yaml --out whole --quiet --set checkpoint.steps=3 --set checkpoint.keep=99

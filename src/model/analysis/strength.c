@@ -102,14 +102,18 @@ static void check_loaded(const Case *c, Diag *diag)
 /* Measured (docs/theory.md): the first slope of cases/factor-of-safety stands with 1.5 and more. */
 static void warn_of_locking(const Model *m, Diag *diag)
 {
-  if (m->formulation->pressure || m->formulation->cells) return;
+  const GridSpec *grid = &m->c->grid; /* a point in each square or cube asks for little */
+  PetscBool single = (PetscBool)(grid->kind == GRID_BOX && cells[grid->cell].nodes > m->dim + 1);
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b) single &= m->c->bodies[b].points_per_cell == 1;
+  if (m->formulation->pressure || m->formulation->cells || single) return;
   diag_warning(diag, "formulation",
                "with displacements as the only unknowns what yields without a change of volume locks: the factor of "
                "safety comes out too large, or nothing fails at all");
   diag_hint(diag, "%s",
             !m->method->takes_pressure ? "mpm and fem take `formulation: mixed`, which does not lock"
-            : case_dilates(m->c)       ? "with a dilatancy angle `formulation: mean-dilatation` does not lock"
-                                       : "`formulation: mixed` does not lock; it is the default of factor-of-safety");
+            : case_dilates(m->c)
+              ? "with a dilatancy angle `formulation: mean-dilatation` locks less, `points_per_cell: 1` least"
+              : "`formulation: mixed` does not lock; it is the default of factor-of-safety");
 }
 
 void strength_start(Model *m, Diag *diag)
