@@ -78,20 +78,23 @@ static void tell_couples(FILE *out, const CalibrateRun *r)
 static void tell_best(FILE *out, const CalibrateRun *r)
 {
   const Region *region = &r->region;
+  const PetscReal *best =
+    r->confirmed >= 0 ? r->x + r->confirmed * region->dim : region->x + region->best * region->dim;
   char name[256];
   fprintf(out, "\n%s:", region->inside ? "Best point" : "Nearest point");
   for (PetscInt p = 0; p < r->c->n_parameters; ++p) {
     const Parameter *parameter = &r->c->parameters[p];
     char text[32];
-    PetscReal x = r->confirmed >= 0 ? r->x[r->confirmed * region->dim + p] : region->x[region->best * region->dim + p];
+    PetscReal x = best[p];
     fprintf(out, "%s %s = %s %s", p ? "," : "", calibrate_label(parameter), calibrate_value(parameter, &x, text),
             parameter->unit ? parameter->unit : "");
   }
   fputs("\n\n| measure | target | predicted | its run |\n|---|---|---|---|\n", out);
   for (PetscInt k = 0; k < r->n_targets; ++k) {
-    const PetscInt at = region->best * r->n_targets + k;
+    PetscReal value, deviation;
+    surrogate_at(region->surrogate[k], best, &value, &deviation);
     fprintf(out, "| %s | %g +- %g | %.4g +- %.2g |", target_name(r, k, name), (double)r->target[k]->value,
-            (double)r->target[k]->uncertainty, (double)region->value[at], (double)region->deviation[at]);
+            (double)r->target[k]->uncertainty, (double)value, (double)deviation);
     if (r->confirmed >= 0) fprintf(out, " %.4g %s |\n", (double)calibrate_found(r, r->confirmed, k), unit_of(r, k));
     else fputs(" - |\n", out);
   }

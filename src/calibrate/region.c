@@ -41,19 +41,23 @@ static void fill(Region *r)
     evaluate(r, i);
     const PetscBool in = r->miss[i] <= 1, best_in = r->miss[r->best] <= 1;
     r->inside += in;
-    if (in && best_in ? r->far[i] < r->far[r->best] : r->miss[i] < r->miss[r->best]) r->best = i;
+    if (in == best_in ? r->far[i] < r->far[r->best] : in) r->best = i;
   }
 }
 
-/* The miss that so many points do not exceed, by halving. */
-static PetscReal miss_of_best(const Region *r, PetscInt wanted)
+/* By what points are judged: where nothing is inside, the least miss is that of the largest doubt. */
+static const PetscReal *distances(const Region *r) { return r->inside ? r->miss : r->far; }
+
+/* The distance that so many points do not exceed, by halving. */
+static PetscReal distance_of_best(const Region *r, PetscInt wanted)
 {
+  const PetscReal *off = distances(r);
   PetscReal low = 0, high = 0;
-  for (PetscInt i = 0; i < r->n; ++i) high = PetscMax(high, r->miss[i]);
+  for (PetscInt i = 0; i < r->n; ++i) high = PetscMax(high, off[i]);
   for (int step = 0; step < 60; ++step) {
     const PetscReal middle = (low + high) / 2;
     PetscInt n = 0;
-    for (PetscInt i = 0; i < r->n; ++i) n += r->miss[i] <= middle;
+    for (PetscInt i = 0; i < r->n; ++i) n += off[i] <= middle;
     if (n < wanted) low = middle;
     else high = middle;
   }
@@ -63,12 +67,12 @@ static PetscReal miss_of_best(const Region *r, PetscInt wanted)
 /* About what may be the region, with a fifth of air; PETSC_FALSE if that is no smaller. */
 static PetscBool shrink(Region *r)
 {
-  const PetscReal limit = PetscMax(1, miss_of_best(r, BOXED));
+  const PetscReal limit = PetscMax(1, distance_of_best(r, BOXED)), *off = distances(r);
   PetscReal share = 1;
   for (PetscInt d = 0; d < r->dim; ++d) {
     PetscReal low = 1, high = 0;
     for (PetscInt i = 0; i < r->n; ++i) {
-      if (r->miss[i] > limit) continue;
+      if (off[i] > limit) continue;
       low = PetscMin(low, r->x[i * r->dim + d]);
       high = PetscMax(high, r->x[i * r->dim + d]);
     }

@@ -68,6 +68,21 @@ sed -i 's/target: 120/target: 500/' force.yaml
 expect "none meets it" 3 "$talus" calibrate force.yaml --out f
 says out.txt "There is no region"
 
+# Out of reach: the nearest point is the softest that is looked at, with its own prediction, however far the target is
+cat >far.yaml <<'END'
+title: Out of reach
+parameters: {E: {range: [0.5e6, 2e6], unit: Pa}}
+set: {materials.rubber.young: $E}
+instruments:
+  free: {case: free.yaml, measures: [{measure: top, times: -1e6, unit: um, target: 600, uncertainty: 0.7}]}
+points: 5
+rounds: 1
+batch: 2
+END
+expect "out of reach" 3 "$talus" calibrate far.yaml --out far
+says out.txt "There is no region" "Nearest point: E = 500000 Pa"
+grep -q "^| free top | 600 +- 0.7 | 18[12]" far/report.md || fail "$name: $(cat far/report.md)"
+
 expect "not run" 0 "$talus" calibrate block.yaml --out dry --dry
 says out.txt "14 sets of parameters, 28 runs, 0 done before"
 [ ! -e dry ] || fail "$name: something was written"
