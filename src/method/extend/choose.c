@@ -9,6 +9,8 @@
 /* The same in explicit steps, whose nodes have lumped masses: of less, more runs away from the body in each substep
  * than points bring back; of more, the node behind would have to give more mass than it has. */
 #define LEADS_BY_MASS 0.4
+/* In space the corner of a full body, an eighth of a full node, has as much as it needs. */
+#define LEADS_BY_MASS_IN_SPACE 0.24
 
 /* Is what holds the first held in the same way in the second, too, so that the first can follow it? */
 static PetscBool is_held_as(const Boundary *b, PetscInt one, PetscInt other)
@@ -49,9 +51,14 @@ static PetscReal half_full(const Discretisation *s, const Extension *e, const Pe
   return e->by_mass ? 0.5 * most : 1;
 }
 
+static PetscReal leads_by_mass(const Discretisation *s)
+{
+  return s->grid->dim == 3 ? LEADS_BY_MASS_IN_SPACE : LEADS_BY_MASS;
+}
+
 static PetscReal find_leads(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[3])
 {
-  const PetscReal least = e->by_mass ? LEADS_BY_MASS : PetscMax(LEADS, s->c->stabilisation.follow);
+  const PetscReal least = e->by_mass ? leads_by_mass(s) : PetscMax(LEADS, s->c->stabilisation.follow);
   const PetscReal enough = least * half_full(s, e, at);
   PetscInt bits = 0;
   for (PetscInt k = 0; k < 2 * s->grid->dim && e->fill[node] >= enough; ++k) {
@@ -83,7 +90,7 @@ static PetscBool is_led(const Discretisation *s, const Extension *e, PetscInt no
 static PetscBool wants_lead(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[3])
 {
   const PetscReal least = s->c->stabilisation.follow;
-  if (e->by_mass) return (PetscBool)(e->loaded[node] > 0 && e->fill[node] < LEADS_BY_MASS * half_full(s, e, at));
+  if (e->by_mass) return (PetscBool)(e->loaded[node] > 0 && e->fill[node] < leads_by_mass(s) * half_full(s, e, at));
   if (e->loaded[node] > 0) return (PetscBool)(e->fill[node] < PetscMax(LEADS, least));
   return (PetscBool)(e->fill[node] > 0 && e->fill[node] < least);
 }
