@@ -229,6 +229,28 @@ says err.txt "nothing holds 'sample' in x" "if its loads are in balance: frictio
 expect "all but smooth" 0 "$talus" run platens.yaml --out smooth --force --quiet --set walls[0].friction=1e-5 --set walls[1].friction=1e-5
 expect "beyond friction" 1 "$talus" run platens.yaml --out beyond --force --quiet --set 'loads={gravity: [9.81, 0]}'
 says err.txt "Friction may be overcome: 'sample' slides at"
+# A wall with mass that falls through another one, or out of the grid: no wall stops a wall, and that is said.
+cat >falls.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, end: 0.6, step: 0.02}
+grid: {box: {min: [-1, -1], max: [4, 3]}, size: 0.5}
+bodies: [{name: ground, shape: {box: {min: [2, -1], max: [4, 0]}}, material: soft}]
+materials: {soft: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{on: {boundary: bottom}, fix: [x, y]}, {on: {boundary: right}, fix: [x]}]
+walls:
+  - {name: floor, shape: {half-space: {point: [0, -0.5], normal: [0, 1]}}, bodies: [ground], from: 100}
+  - {name: stone, shape: {box: {min: [0, 1], max: [1, 2]}}, mass: {density: 2000}}
+loads: {gravity: [0, -10]}
+measures: {height: {wall_position: y, of: {wall: stone}}}
+END
+sed 's/, from: 100//; s/max: \[4, 3\]/max: [4, 3]/; s/min: \[2, -1\], max: \[4, 0\]/min: [2, -0.5], max: [4, 0]/' falls.yaml >through.yaml
+expect "through a wall" 0 "$talus" run through.yaml --out falls --force --quiet --set analysis.end=0.68
+says err.txt "at the end wall 'stone' stands in wall 'floor': walls meet material, and not each other"
+expect "out of the grid" 0 "$talus" run falls.yaml --out falls --force --quiet --set analysis.end=0.8
+says err.txt "at the end the centre of wall 'stone' is outside of the grid"
+expect "still in the air" 0 "$talus" run falls.yaml --out falls --force --quiet --set analysis.end=0.2
+! grep -q "stands in wall\|outside of the grid" err.txt || fail "$name: $(cat err.txt)"
 # A wall at the edge of the grid is what holds there; numbers in other units are told of.
 sed 's/^grid.*/grid: {box: {min: [0, -0.01], max: [1.2, 0.8]}, size: 0.01}/; s/^boundary.*//; s/^walls: \[/&{name: back, shape: {half-space: {point: [0, 0], normal: [1, 0]}}}, /' runs_out.yaml >units.yaml
 expect "a wall at the edge" 0 "$talus" check units.yaml

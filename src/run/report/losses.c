@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "model/measure/measure.h"
 #include "run/report/sunk.h"
+#include "run/report/through.h"
 
 /* share of the energy that came in: about what granular flows lose on usual grids */
 #define TRANSFER_ALLOWED 0.05
@@ -293,5 +294,6 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   PetscCall(WarnOfCrowd(m, diag));
   PetscCall(WarnOfMovedLoads(m, diag));
   warn_of_sunk(m, diag);
+  warn_of_walls_through(m, diag);
   PetscFunctionReturn(0);
 }
