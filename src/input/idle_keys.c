@@ -54,6 +54,11 @@ static PetscBool is_lumped(const Case *c, PetscInt i)
 }
 static PetscBool is_tied(const Case *c, PetscInt i) { return is_implicit(c, i) && has_grid(c, i) && !has_domains(c); }
 
+static PetscBool has_triangles(const Case *c, PetscInt i)
+{
+  return (void)i, c->grid.kind != GRID_BOX || c->grid.cell == CELL_TRIANGLE || c->grid.cell == CELL_TETRAHEDRON;
+}
+
 /* --- the table --- */
 #define DYNAMIC "leave it out, or take `analysis: {type: dynamic}`"
 #define NO_INERTIA "statics has no inertia", DYNAMIC
@@ -107,6 +112,8 @@ static const IdleKey keys[] = {
    "explicit steps, and `analysis: {mass: lumped}`, lump all of the mass; fem and statics need nothing"},
   {NULL, "stabilisation.inertia", is_tied, "only implicit dynamics of mpm with basis cell has it",
    "with basis gimp and bspline there is `curvature`; others need nothing"},
+  {NULL, "grid.diagonal", has_triangles, "quadrilaterals and hexahedra are not cut",
+   "`grid: {cell: triangle}` has diagonals"},
   {NULL, "grid.outside", has_grid, "only points of mpm can leave the grid",
    "the mesh of fem, or gmm's cloud, goes along"},
   {NULL, "initial.reset_displacement", settles, "nothing moves before the first step",

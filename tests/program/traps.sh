@@ -359,4 +359,29 @@ expect "a wall for it" 0 "$talus" run case.yaml --out run --force --quiet \
   --set 'measures={press: {wall_force: x, of: {wall: press}}}'
 awk -v f="$(last 3)" 'BEGIN { exit !(f > 211100 && f < 211122) }' || fail "$name: $(last 3) N" # mu (1 / l - l), l = 0.9
 
+# --- what never comes, and numbers of other units ---
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [4, 3]}, size: 0.5}
+bodies:
+  - {name: soil, shape: {box: {min: [0, 0], max: [4, 2]}}, material: soil}
+materials:
+  soil: {law: mohr-coulomb, density: 2000, young: 1e8, poisson: 0.3, friction_angle: 30, cohesion: 1e4}
+boundary:
+  - {on: {boundary: bottom}, fix: [x, y]}
+  - {on: {boundary: left}, fix: [x]}
+  - {on: {boundary: right}, fix: [x]}
+loads: {gravity: [0, -9.81], gravity_amplitude: [[0, 0], [1, 1]]}
+END
+warned "gravity" --
+warned "gravity too late" "it is 0 until the end of the run, at t = 1 s: nothing of it ever acts" -- --set 'loads.gravity_amplitude=[[2, 0], [3, 1]]'
+warned "a tenth of gravity" "the run ends at t = 1 s, where it is 0.1: it would be 1 at t = 10 s" -- --set 'loads.gravity_amplitude=[[0, 0], [10, 1]]'
+warned "a wall too late" "the run ends at t = 1 s: wall 'gate' never stands" -- \
+  --set 'walls=[{name: gate, shape: {half-space: {point: [0, 2], normal: [0, -1]}}, from: 3}]'
+warned "diagonals of squares" "grid.diagonal has no effect here: quadrilaterals and hexahedra are not cut" -- --set grid.diagonal=left
+warned "tonnes" "'soil' weighs 2 kg a cubic metre, less than any soil" -- --set materials.soil.density=2
+warned "millimetres" "gravity of 9810 m/s2 is 1e+03 times that of the earth" -- --set 'loads.gravity=[0, -9810]'
+
 finish

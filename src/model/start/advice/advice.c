@@ -203,6 +203,7 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
   advise_down(m, diag);
   advise_still(m, diag);
   advise_passing(m, diag);
+  advise_late(m, diag);
   advise_dilatancy(m, diag);
   for (PetscInt k = 0; k < m->c->n_measures; ++k) PetscCall(AdviseReaction(m, m->c->measures + k, diag));
   PetscFunctionReturn(0);

@@ -6,6 +6,8 @@
 #define NO_COEFFICIENT 3     /* of friction: 72 degrees */
 #define FASTEST 3e4          /* m/s, of waves: diamond has 1.8e4 */
 #define PRESSED_TO_NOTHING 4 /* of its modulus, by its own weight */
+#define STRONGEST 1000       /* m/s2, of gravity: a centrifuge has some hundred times that of the earth */
+#define LIGHTEST 20          /* kg/m3, of what yields under the earth's gravity: foam */
 #define LEANING 4            /* k0: passive pressure at 37 degrees */
 #define DEGREES (180 / PETSC_PI)
 
@@ -69,6 +71,24 @@ static PetscErrorCode Heights(const Model *m, PetscReal g, PetscReal *height)
   PetscFunctionReturn(0);
 }
 
+/* t/m3 and mm/s2. */
+static void advise_gravity(const Model *m, PetscReal g, Diag *diag)
+{
+  char path[128];
+  if (g > STRONGEST) {
+    diag_warning(diag, "loads.gravity", "gravity of %g m/s2 is %.3g times that of the earth", (double)g,
+                 (double)(g / 9.81));
+    diag_hint(diag, "lengths are in m: 9.81 m/s2");
+  }
+  for (PetscInt i = 0; i < m->c->n_materials && g > 9 && g < 11; ++i) {
+    const MaterialSpec *spec = m->c->materials + i;
+    if (!m->materials[i].law->yields || spec->density >= LIGHTEST) continue;
+    snprintf(path, sizeof path, "materials.%s.density", spec->name);
+    diag_warning(diag, path, "'%s' weighs %g kg a cubic metre, less than any soil", spec->name, (double)spec->density);
+    diag_hint(diag, "densities are in kg/m3: soils have 1500 to 2200");
+  }
+}
+
 static PetscErrorCode AdviseWeight(const Model *m, Diag *diag)
 {
   const PetscReal *gravity = m->c->gravity;
@@ -78,6 +98,7 @@ static PetscErrorCode AdviseWeight(const Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   if (g == 0) PetscFunctionReturn(0);
+  advise_gravity(m, g, diag);
   PetscCall(PetscMalloc1(m->c->n_bodies, &height));
   PetscCall(Heights(m, g, height));
   for (PetscInt b = 0; b < m->c->n_bodies; ++b)
