@@ -118,6 +118,8 @@ PetscInt grid_candidates(const Grid *grid, const PetscReal *x, PetscInt max, Pet
 
 /* Do its sides lie across the axes? */
 PetscBool grid_is_aligned(const Grid *grid);
+/* The name of the side of a box across an axis (0 1 2), the lower or the upper one. */
+const char *box_side_name(PetscInt axis, int high);
 /* Is it always shared in the same way among as many ranks, when it is made for the same case? */
 PetscBool grid_starts_alike(const Grid *grid);
 /* Are all cells cut from squares or cubes of one size? */

@@ -7,7 +7,11 @@
  * top (y), and in 3D front (lowest z) and back (highest z). */
 #include "grid/box/box.h"
 
-static const char *const side_names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"front", "back"}};
+const char *box_side_name(PetscInt axis, int high)
+{
+  static const char *const names[3][2] = {{"left", "right"}, {"bottom", "top"}, {"front", "back"}};
+  return names[axis][high];
+}
 
 /* The rank and the local number there of a lattice node. */
 static PetscSFNode lattice_owner(const GridBox *box, const PetscInt ijk[3])
@@ -205,7 +209,7 @@ static PetscErrorCode FillSides(Grid *grid, const VoxelBlock *nodes, const Petsc
   for (PetscInt axis = 0; axis < grid->dim; ++axis)
     for (PetscInt upper = 0; upper < 2; ++upper) {
       GridSet *set = grid->sets + grid->n_sets++;
-      PetscCall(PetscStrallocpy(side_names[axis][upper], &set->name));
+      PetscCall(PetscStrallocpy(box_side_name(axis, upper), &set->name));
       PetscCall(SideNodes(grid, nodes, lattice, axis, upper, set));
       PetscCall(SideFaces(grid, axis, upper, set));
     }

@@ -1,15 +1,13 @@
 /* Which way is down? Bodies fall off what was to hold them where names or signs mislead. */
 #include "model/model_private.h"
 
-static const char *const sides[3][2] = {{"left", "right"}, {"bottom", "top"}, {"front", "back"}};
-
 /* Does the entry hold that component of nodes on that side of the box? Of a shape it is
  * believed. */
 static PetscBool holds_side(const Grid *grid, const MotionSpec *entry, PetscInt axis, int high)
 {
   const PetscReal at = high ? grid->max[axis] : grid->min[axis], slack = 1e-9 * (grid->max[axis] - grid->min[axis]);
   if (!entry->component[axis] && entry->kind != MOTION_ROTATION) return PETSC_FALSE;
-  if (entry->on.boundary) return !strcmp(entry->on.boundary, sides[axis][high]);
+  if (entry->on.boundary) return !strcmp(entry->on.boundary, box_side_name(axis, high));
   if (!entry->on.has[axis]) return PETSC_TRUE;
   return at >= entry->on.min[axis] - slack && at <= entry->on.max[axis] + slack;
 }
@@ -34,7 +32,8 @@ static void advise_floor(const Model *m, Diag *diag)
     diag_warning(diag, path,
                  "'bottom' is the side of the lowest y, but gravity points along %c%c, where nothing is held",
                  high ? '+' : '-', "xyz"[axis]);
-    diag_hint(diag, "there the side is called '%s'; or let y be vertical: gravity: [0, -9.81, 0]", sides[axis][high]);
+    diag_hint(diag, "there the side is called '%s'; or let y be vertical: gravity: [0, -9.81, 0]",
+              box_side_name(axis, high));
   }
 }
 

@@ -11,9 +11,8 @@
 /* How far the place reaches along an axis, m; < 0: it is not known, or has no end there. */
 static PetscReal depth_of(const Selector *on, PetscInt axis)
 {
-  static const char *const sides[3][2] = {{"left", "right"}, {"bottom", "top"}, {"front", "back"}};
   for (int high = 0; high < 2 && on->boundary; ++high)
-    if (!strcmp(on->boundary, sides[axis][high])) return 0;
+    if (!strcmp(on->boundary, box_side_name(axis, high))) return 0;
   return on->has[axis] && !on->has_shape ? on->max[axis] - on->min[axis] : -1;
 }
 
