@@ -384,4 +384,26 @@ warned "diagonals of squares" "grid.diagonal has no effect here: quadrilaterals 
 warned "tonnes" "'soil' weighs 2 kg a cubic metre, less than any soil" -- --set materials.soil.density=2
 warned "millimetres" "gravity of 9810 m/s2 is 1e+03 times that of the earth" -- --set 'loads.gravity=[0, -9810]'
 
+# --- grains that long steps shear: the axes of stretch turn within a step, and speeds are off many times as far ---
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+basis: {cell: {}}
+analysis: {type: dynamic, end: 2, step: 8e-3}
+grid: {box: {min: [0, 0], max: [3e3, 0.125]}, counts: [3, 25], cell: quadrilateral}
+bodies:
+  - name: layer
+    shape: {box: {min: [0, 0], max: [3e3, 0.1]}}
+    material: grains
+    stress: {xx: 13442.83 * (y - 0.1), yy: 13442.83 * (y - 0.1), zz: 13442.83 * (y - 0.1)}
+materials:
+  grains: {law: mu-i, density: 1500, young: 1e7, poisson: 0.3, static_friction: 0.38, limit_friction: 0.64, inertial_number: 0.279, grain_size: 0.02, grain_density: 2500}
+boundary: [{on: {y: 0}, fix: [x, y]}]
+loads: {gravity: [3.990086, -8.961881], gravity_amplitude: [[0, 1]]}
+END
+expect "long steps" 0 "$talus" run case.yaml --out run --force --quiet
+says err.txt "warning: steps shear the grains by 0.01" "take half of it and compare"
+expect "steps of a quarter" 0 "$talus" run case.yaml --out run --force --quiet --set analysis.step=2e-3
+lacks err.txt "shear the grains"
+
 finish

@@ -3,6 +3,7 @@
 #include "run/report/losses.h"
 #include "base/text.h"
 #include "model/measure/measure.h"
+#include "run/report/sheared.h"
 #include "run/report/sunk.h"
 #include "run/report/through.h"
 
@@ -293,6 +294,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   PetscCall(WarnOfGain(m, diag));
   PetscCall(WarnOfCrowd(m, diag));
   PetscCall(WarnOfMovedLoads(m, diag));
+  PetscCall(WarnOfShear(m, diag));
   warn_of_sunk(m, diag);
   warn_of_walls_through(m, diag);
   PetscFunctionReturn(0);
