@@ -186,7 +186,7 @@ static const LawField fields[] = {
   {                                                                                                         \
     .parameters = parameters, .fields = fields, .n_state = N_STATE, .yields = PETSC_TRUE, .update = update, \
     .energy = energy, .initial_stress = initial_stress, .volume = volume, .volume_law = split_volume,       \
-    .reduce = reduce, __VA_ARGS__                                                                           \
+    .of_stress = "volume_ratio", .reduce = reduce, __VA_ARGS__                                              \
   }
 
 const Law law_j2 = J2(.name = "j2", .prepare = prepare_linear,

@@ -127,6 +127,8 @@ typedef struct Law {
   /* Tell packed parameters the time at the start of a step and its length, s; dt = 0 stands for no step, in
    * which nothing may flow. NULL: the law does not know of time. */
   void (*step)(PetscReal time, PetscReal dt, PetscReal *packed);
+  /* A stored number that the stress decides, by its name: no history that stays when constants change. NULL: none. */
+  const char *of_stress;
   /* Does stress depend on the rate of strain? Statics have no rate: a step is endless there, dt = PETSC_INFINITY. */
   PetscBool rate;
 } Law;

@@ -1,6 +1,6 @@
 #!/bin/sh
-# What a stage takes over of loads and motion: pressures that go on where the surface now is, the spin of what flies, and
-# walls with mass that statics or a reset bring to rest.
+# What a stage takes over of loads and motion: pressures that go on where the surface now is, the spin of what flies, walls
+# with mass that statics or a reset bring to rest, what comes late, and stresses of what ages.
 . "$(dirname "$0")/library.sh"
 
 # A column under a constant pressure, pressed through several cells in the first stage: nothing is out of balance later.
@@ -182,5 +182,46 @@ for way in "fem 1" "fem 2" "mpm 3"; do
   sed 's/boundary: \[{name: top/walls: [{name: press/' late.yaml >late_wall.yaml
   expect "a wall that comes, $1 on $2" 0 on_ranks $2 "$talus" run late_wall.yaml --out late --force --quiet --set method=$1
   bears
+done
+# Stresses stay when elastic constants change, by a stage or by an amplitude, whatever the law: a loaded square stays where it is
+cat >ages.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 4}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.5}
+bodies: [{name: square, shape: {box: {min: [0, 0], max: [1, 1]}}, material: metal}]
+materials: {metal: {law: j2, density: 1, young: 1e7, poisson: 0.3, yield_stress: 1e9}}
+boundary: [{on: {boundary: bottom}, fix: [y]}, {on: {boundary: left}, fix: [x]}]
+loads: {tractions: [{on: {boundary: top}, value: [0, -1e4], amplitude: [[0, 0], [0.25, 1]]}]}
+measures: {u: {displacement: y, of: {tracer: [0.5, 1]}}, across: {stress: zz}}
+END
+for law in j2 j2-log neo-hookean-split; do
+  metal="{law: $law, density: 1, young: 1e7, poisson: 0.3$([ $law = neo-hookean-split ] || echo ', yield_stress: 1e9')}"
+  for way in "stages=[{name: soft}, {name: hard, materials: {metal: {young: 2e7}}}, {name: dense, materials: {metal: {poisson: 0.45}}}]" "materials.metal.amplitude={young: [[0.25, 1], [0.5, 2]]}"; do
+    expect "$law ages, ${way%%=*}" 0 "$talus" run ages.yaml --out ages --force --quiet --set "materials.metal=$metal" --set "$way"
+    awk -F, -v from=$(head -n 1 ages/history.csv | awk -F, '{ print NF - 1 }') 'NR > 2 { u = $from; s = $NF; if (u > -9.085e-4 || u < -9.095e-4 || s > -2995 || s < -3005) { print; bad = 1 } } END { exit bad || NR < 5 }' ages/history.csv ||
+      fail "$name: $(cat ages/history.csv)"
+  done
+done
+
+# Weight of two layers of different density, over the whole and over each: no stress is off it
+cat >layers.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [1, 3]}, size: 0.25}
+bodies:
+  - {name: low, shape: {box: {min: [0, 0], max: [1, 1]}}, material: heavy, k0: 0.5}
+  - {name: high, shape: {box: {min: [0, 1], max: [1, 2]}}, material: light, k0: 0.5}
+materials:
+  heavy: {law: mohr-coulomb, density: 2000, young: 1e7, poisson: 0.3, friction_angle: 30, cohesion: 1e3}
+  light: {law: mohr-coulomb, density: 1500, young: 1e7, poisson: 0.3, friction_angle: 30, cohesion: 1e3}
+boundary: [{on: {boundary: bottom}, fix: [y]}, {on: {boundary: left}, fix: [x]}, {on: {boundary: right}, fix: [x]}]
+loads: {gravity: [0, -10]}
+measures: {all: {overburden: largest}, low: {overburden: largest, of: {body: low}}, high: {overburden: largest, of: {body: high}}}
+END
+for ranks in 1 2; do
+  expect "layers on $ranks" 0 on_ranks $ranks "$talus" run layers.yaml --out layers --force --quiet
+  awk -F, 'END { for (k = 3; k <= 5; ++k) if (!($k < 1e-9)) exit 1 }' layers/history.csv || fail "$name: $(tail -n 1 layers/history.csv)"
 done
 finish

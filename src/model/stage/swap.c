@@ -7,11 +7,13 @@ PetscBool material_as_stiff(const Material *a, const Material *b)
   return a->law == b->law && a->elastic.bulk == b->elastic.bulk && a->elastic.shear == b->elastic.shear;
 }
 
-/* Numbers of history that both laws know by the same name. */
+/* Numbers of history that both laws know by the same name. The volume that bears a stress is none: with other elastic
+ * constants it is another. */
 static void keep_history(const Law *was, const PetscReal *before, const Law *is, PetscReal *state)
 {
   for (const LawField *f = is->fields; f->name; state += f++->components) {
     const PetscReal *old = before;
+    if (is->of_stress && !strcmp(f->name, is->of_stress)) continue;
     for (const LawField *g = was->fields; g->name; old += g++->components)
       if (f->components == 1 && g->components == 1 && !strcmp(f->name, g->name)) *state = *old;
   }

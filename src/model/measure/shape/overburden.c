@@ -4,32 +4,65 @@
 #include "model/measure/measure.h"
 #include "model/model_private.h"
 
-/* Along gravity, from the top of the bodies' shapes. */
+/* A body as a level layer, by its shape, and gravity. */
 typedef struct {
-  PetscInt axis;
-  PetscReal g, top, height, sign; /* sign: -1 where gravity pulls towards smaller coordinates */
+  PetscReal min[3], max[3]; /* along each axis, m; of gravity heights */
+  PetscReal weight;         /* N/m3; 0: it is not there, or has no shape */
 } Layer;
 
-static Layer layer_of(const Model *m, PetscInt body)
+typedef struct {
+  PetscInt axis; /* of gravity */
+  PetscReal g, up;
+  Layer *layer; /* of each body */
+} Layers;
+
+static Layer layer_of(const Model *m, PetscInt body, const Layers *all)
 {
-  Layer layer = {.top = -PETSC_MAX_REAL};
-  PetscReal g[3], lowest = PETSC_MAX_REAL;
+  const BodySpec *b = m->c->bodies + body;
+  const PetscInt k = all->axis;
+  Layer layer = {.weight = 0};
+  if (!b->has_shape || b->absent) return layer;
+  for (PetscInt i = 0; i < m->c->n_materials; ++i)
+    if (!strcmp(b->material, m->c->materials[i].name)) layer.weight = m->materials[i].density * all->g;
+  shape_bounds(&b->shape, m->dim, layer.min, layer.max);
+  if (all->up > 0) return layer;
+  const PetscReal top = -layer.min[k];
+  layer.min[k] = -layer.max[k];
+  layer.max[k] = top;
+  return layer;
+}
+
+static PetscErrorCode FindLayers(const Model *m, Layers *all)
+{
+  PetscReal g[3];
+
+  PetscFunctionBeginUser;
+  *all = (Layers){.axis = 0};
   gravity_at(m->c, m->time, g);
   for (PetscInt d = 1; d < m->dim; ++d)
-    if (PetscAbsReal(g[d]) > PetscAbsReal(g[layer.axis])) layer.axis = d;
-  layer.g = PetscAbsReal(g[layer.axis]);
-  layer.sign = g[layer.axis] < 0 ? -1 : 1;
+    if (PetscAbsReal(g[d]) > PetscAbsReal(g[all->axis])) all->axis = d;
+  all->g = PetscAbsReal(g[all->axis]);
+  all->up = g[all->axis] < 0 ? 1 : -1;
+  PetscCall(PetscMalloc1(m->c->n_bodies, &all->layer));
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b) all->layer[b] = layer_of(m, b, all);
+  PetscFunctionReturn(0);
+}
+
+/* Weight above a place, where material was at the start, and of all that lies above and below it, Pa. */
+static void weigh(const Model *m, const Layers *all, PetscInt own, const PetscReal *x, PetscReal *above,
+                  PetscReal *whole)
+{
+  const PetscInt k = all->axis;
+  const PetscReal height = all->up * x[k];
+  *above = *whole = 0;
   for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
-    PetscReal min[3], max[3];
-    if ((body >= 0 && b != body) || !m->c->bodies[b].has_shape) continue;
-    shape_bounds(&m->c->bodies[b].shape, m->dim, min, max);
-    const PetscReal low = -layer.sign * (layer.sign < 0 ? min : max)[layer.axis],
-                    high = -layer.sign * (layer.sign < 0 ? max : min)[layer.axis];
-    layer.top = PetscMax(layer.top, high);
-    lowest = PetscMin(lowest, low);
+    const Layer *l = all->layer + b;
+    PetscBool beside = PETSC_FALSE;
+    for (PetscInt d = 0; d < m->dim && b != own; ++d) beside |= d != k && (x[d] < l->min[d] || x[d] > l->max[d]);
+    if (beside || l->weight == 0) continue;
+    *whole += l->weight * (l->max[k] - l->min[k]);
+    *above += l->weight * PetscMax(0, l->max[k] - PetscMax(height, l->min[k]));
   }
-  layer.height = layer.top - lowest;
-  return layer;
 }
 
 typedef enum { OFF_MEAN, OFF_LARGEST, RATIO_LOWEST, RATIO_HIGHEST } OverburdenWord;
@@ -43,26 +76,27 @@ typedef struct {
 static PetscErrorCode TallyPoints(Model *m, const MeasureSpec *s, Tally *t)
 {
   const PetscInt body = measure_body(m, s);
-  const Layer layer = layer_of(m, body);
-  PetscReal sigma[6];
+  PetscReal sigma[6], x[3], above, whole;
+  Layers all;
 
   PetscFunctionBeginUser;
+  PetscCall(FindLayers(m, &all));
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal share = measure_share(m, s, body, p);
-    if (share == 0 || layer.g == 0) continue;
-    const PetscReal weight = m->materials[m->points->material[p]].density * layer.g;
+    for (PetscInt d = 0; d < m->dim; ++d)
+      x[d] = point_real(m->points, POINT_X, p)[d] - point_real(m->points, POINT_U, p)[d];
+    weigh(m, &all, m->points->body[p], x, &above, &whole);
+    if (share == 0 || whole == 0) continue;
     const PetscReal volume = share * m->points->real[POINT_VOLUME][p];
-    const PetscReal start =
-      point_real(m->points, POINT_X, p)[layer.axis] - point_real(m->points, POINT_U, p)[layer.axis];
     PetscCall(ModelPointStress(m, p, sigma));
-    const PetscReal above = weight * (layer.top + layer.sign * start);
-    const PetscReal off = PetscAbsReal(sigma[layer.axis] + above) / (weight * layer.height);
+    const PetscReal off = PetscAbsReal(sigma[all.axis] + above) / whole;
     t->volume += volume;
     t->off += volume * off;
     t->worst = PetscMax(t->worst, off);
-    t->less = PetscMax(t->less, sigma[layer.axis] / above);
-    t->more = PetscMax(t->more, -sigma[layer.axis] / above);
+    t->less = PetscMax(t->less, sigma[all.axis] / above);
+    t->more = PetscMax(t->more, -sigma[all.axis] / above);
   }
+  PetscCall(PetscFree(all.layer));
   PetscFunctionReturn(0);
 }
 
@@ -98,6 +132,6 @@ const Measure measure_overburden = {
   .key = "overburden",
   .takes = MEASURE_WORD,
   .number = {.unit = "",
-             .help = "how far the stress along gravity in a level layer, a body with a shape, is off the weight above "
-                     "it, over that of the whole layer: 0 between smooth walls"},
+             .help = "how far the stress along gravity in level layers, bodies with a shape, is off the weight above "
+                     "it, over that of all layers there: 0 between smooth walls"},
   .words = words};
