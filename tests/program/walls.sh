@@ -229,6 +229,36 @@ says err.txt "nothing holds 'sample' in x" "if its loads are in balance: frictio
 expect "all but smooth" 0 "$talus" run platens.yaml --out smooth --force --quiet --set walls[0].friction=1e-5 --set walls[1].friction=1e-5
 expect "beyond friction" 1 "$talus" run platens.yaml --out beyond --force --quiet --set 'loads={gravity: [9.81, 0]}'
 says err.txt "Friction may be overcome: 'sample' slides at"
+# Statics: a rough wall carries what rests on it, two that grip a block lift it, in as many steps as are asked for; and
+# a wall that passes under what is held rubs at the limit of friction.
+cat >carried.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, end: 1, step: 0.1}
+grid: {box: {min: [-0.2, -0.2], max: [0.6, 0.6]}, size: 0.05}
+bodies:
+  - {name: block, shape: {box: {min: [0, 0], max: [0.2, 0.2]}}, material: soft}
+materials:
+  soft: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0}
+walls:
+  - {name: belt, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, friction: 0.5, motion: [{displacement: {x: 0.1}, amplitude: [[0, 0], [0.5, 0], [1, 1]]}]}
+loads: {gravity: [0, -10], gravity_amplitude: [[0, 0], [0.5, 1]]}
+measures: {rubs: {wall_force: x, of: {wall: belt}}, bears: {wall_force: y, of: {wall: belt}}, way: {displacement: x, of: {tracer: [0.1, 0.1]}}}
+END
+for way in "mpm 1" "mpm 3" "fem 1" "gmm 1"; do
+  set -- $way
+  expect "carried, $way" 0 on_ranks $2 "$talus" run carried.yaml --out carried --force --quiet --set method=$1
+  awk -F, 'END { exit !($2 == 10 && $3 < 0.01 && $3 > -0.01 && $4 > 399.99 && $4 < 400.01 && $5 > 0.09999 && $5 < 0.10001) }' carried/history.csv ||
+    fail "$name: $(tail -n 1 carried/history.csv)"
+done
+expect "held, and passed" 0 "$talus" run carried.yaml --out carried --force --quiet --set 'boundary=[{on: {x: 0.2}, fix: [x]}]'
+awk -F, 'END { exit !($2 == 10 && $3 > 199 && $3 < 201 && $4 > 399.9 && $4 < 400.1 && $5 < 0.001 && $5 > -0.001) }' carried/history.csv ||
+  fail "$name: $(tail -n 1 carried/history.csv)"
+cat >walls.txt <<'END'
+walls=[{name: left, shape: {half-space: {point: [0, 0], normal: [1, 0]}}, friction: 0.5, motion: [{displacement: {x: 0.0005}, amplitude: [[0, 0], [0.5, 1]]}, {displacement: {y: 0.1}, amplitude: [[0, 0], [0.5, 0], [1, 1]]}]}, {name: belt, shape: {half-space: {point: [0.2, 0], normal: [-1, 0]}}, friction: 0.5, motion: [{displacement: {x: -0.0005}, amplitude: [[0, 0], [0.5, 1]]}, {displacement: {y: 0.1}, amplitude: [[0, 0], [0.5, 0], [1, 1]]}]}]
+END
+expect "gripped and lifted" 0 "$talus" run carried.yaml --out carried --force --quiet --set "$(cat walls.txt)" --set 'measures.way={displacement: y, of: {tracer: [0.1, 0.1]}}'
+awk -F, 'END { exit !($2 == 10 && $4 > 199.9 && $4 < 200.1 && $5 > 0.0998 && $5 < 0.1) }' carried/history.csv || fail "$name: $(tail -n 1 carried/history.csv)"
 # A wall with mass that falls through another one, or out of the grid: no wall stops a wall, and that is said.
 cat >falls.yaml <<'END'
 kinematics: plane-strain

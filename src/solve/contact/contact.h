@@ -96,6 +96,7 @@ typedef struct Contact {
   PetscReal near;   /* m: what is farther away cannot be reached in a step */
   PetscReal length; /* of a cell, m: scale of gaps */
   ContactShare share;
+  PetscBool grips; /* for a first guess: what was in contact goes along with its wall */
   /* n_partners x n_bodies: of friction and adhesion where that body meets this partner; 0: it does not slide */
   PetscReal *divisor;
   WallState *wall;
@@ -231,6 +232,9 @@ void contact_balance(const Contact *contact, const ContactPoint *c, PetscReal f[
 PetscReal contact_stays(const Contact *contact, const ContactPoint *c);
 /* What the acceleration at the end of the step has of it more than that, as rate of momentum, N. */
 void contact_excess(const Contact *contact, const ContactPoint *c, PetscReal f[3]);
+/* Collective. In statics: does a rough wall that moves along itself take away what it touches, so that this would slide
+ * if it stayed? */
+PetscErrorCode ContactCarries(const Contact *contact, MPI_Comm comm, PetscBool *carries);
 /* Collective. Does anything in contact move along its wall by more than what rests may, at the last assembly? */
 PetscErrorCode ContactMoves(const Contact *contact, MPI_Comm comm, PetscBool *moves);
 /* Work of the last step's forces over the gaps and slips that may stay, J; contact may be NULL. size: of a cell, m. */

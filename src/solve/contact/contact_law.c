@@ -72,7 +72,7 @@ ContactState contact_law(const ContactLaw *law, const WallPlace *place, const Pe
   across(n, trial, now->shear);
   const PetscReal size = PetscSqrtReal(dot(now->shear, now->shear));
   const PetscReal bound = bound_of(law, now->pressure, &slope);
-  if (size <= bound) {
+  if (size <= bound || law->grips) {
     if (K) stick(law, n, K);
     return CONTACT_STICKS;
   }

@@ -111,6 +111,28 @@ static PetscReal motion_of(const ContactPoint *c)
   return PetscSqrtReal(PetscSqr(c->slip[0]) + PetscSqr(c->slip[1]) + PetscSqr(c->slip[2]));
 }
 
+/* Farther than friction lets it slip before it slides. */
+static PetscBool is_carried(const Contact *s, const ContactPoint *c)
+{
+  PetscReal along = 0, square = 0, pressure = 0;
+  if (c->before == CONTACT_OPEN || c->law.kind == CONTACT_FRICTIONLESS || c->law.kind == CONTACT_BONDED)
+    return PETSC_FALSE;
+  for (int d = 0; d < 3; ++d) along += c->swept[d] * c->facing[d], pressure += c->last[d] * c->facing[d];
+  for (int d = 0; d < 3; ++d) square += PetscSqr(c->swept[d] - along * c->facing[d]);
+  return (PetscBool)(PetscSqrtReal(square) * c->law.along >
+                     contact_most(&c->law, pressure) + 1e-9 * s->length * c->law.along);
+}
+
+PetscErrorCode ContactCarries(const Contact *s, MPI_Comm comm, PetscBool *carries)
+{
+  PetscBool here = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (const ContactPoint *c = s->point; c < s->point + s->n && !s->share.moves; ++c) here |= is_carried(s, c);
+  PetscCallMPI(MPI_Allreduce(&here, carries, 1, MPIU_BOOL, MPI_LOR, comm));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactMoves(const Contact *s, MPI_Comm comm, PetscBool *moves)
 {
   PetscBool here = PETSC_FALSE;

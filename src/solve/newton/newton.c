@@ -100,19 +100,42 @@ static PetscErrorCode LackOfGuess(const Newton *n, PetscBool *lacks, PetscReal *
   PetscFunctionReturn(0);
 }
 
-/* One linear step that carries the prescribed increments into the interior: what is left of them at
- * du is moved to the right-hand side through the columns of the tangent. Skipped if the first guess
- * has them already. *solved: PETSC_FALSE where a factorisation has
- * failed, whose result is infinite. */
-static PetscErrorCode LiftPrescribed(Newton *n, PetscBool *solved)
+/* One linear step from du, with what has been assembled there. *solved: PETSC_FALSE where a factorisation has failed,
+ * whose result is infinite. */
+static PetscErrorCode StepLinearly(Newton *n, PetscBool *solved)
 {
   KSPConvergedReason reason;
   StepProblem *p = n->problem;
-  PetscReal *lift;
-  PetscBool lacks;
   KSP ksp;
   Vec y;
   double start;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscTime(&start));
+  PetscCall(NewtonFillMatrix(n));
+  PetscCall(NewtonForcing(n));
+  PetscCall(PetscTime(&n->solving));
+  n->t_matrix += n->solving - start;
+  PetscCall(SNESGetKSP(n->snes, &ksp));
+  PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
+  PetscCall(VecDuplicate(n->x, &y));
+  PetscCall(KSPSolve(ksp, n->f, y));
+  PetscCall(KSPGetConvergedReason(ksp, &reason));
+  *solved = (PetscBool)(reason != KSP_DIVERGED_PC_FAILED);
+  PetscCall(NewtonGetUnknowns(n, n->x));
+  if (*solved) PetscCall(VecAXPY(n->x, -1, y));
+  PetscCall(VecDestroy(&y));
+  PetscCall(NewtonSetIncrements(n, n->x));
+  PetscFunctionReturn(0);
+}
+
+/* The step that carries the prescribed increments into the interior: what is left of them at du is moved to the
+ * right-hand side through the columns of the tangent. Skipped if the first guess has them already. *solved: see
+ * StepLinearly. */
+static PetscErrorCode LiftPrescribed(Newton *n, PetscBool *solved)
+{
+  PetscReal *lift;
+  PetscBool lacks;
 
   PetscFunctionBeginUser;
   *solved = PETSC_TRUE;
@@ -123,26 +146,61 @@ static PetscErrorCode LiftPrescribed(Newton *n, PetscBool *solved)
   n->lift = NULL;
   PetscCall(NewtonGetResidual(n, n->f));
   if (n->report->status == LAW_OK) {
-    PetscCall(PetscTime(&start));
-    PetscCall(NewtonFillMatrix(n));
-    PetscCall(NewtonForcing(n));
-    PetscCall(PetscTime(&n->solving));
-    n->t_matrix += n->solving - start;
-    PetscCall(SNESGetKSP(n->snes, &ksp));
-    PetscCall(KSPSetOperators(ksp, p->system->matrix, p->system->matrix));
-    PetscCall(VecDuplicate(n->x, &y));
-    PetscCall(KSPSolve(ksp, n->f, y));
-    PetscCall(KSPGetConvergedReason(ksp, &reason));
-    *solved = (PetscBool)(reason != KSP_DIVERGED_PC_FAILED);
-    PetscCall(NewtonGetUnknowns(n, n->x));
-    if (*solved) PetscCall(VecAXPY(n->x, -1, y));
-    PetscCall(VecDestroy(&y));
-    PetscCall(NewtonSetIncrements(n, n->x));
+    PetscCall(StepLinearly(n, solved));
     n->report->residual[0] = 1;
     n->report->iterations = 1;
     PetscCall(VecNorm(n->f, NORM_2, &n->report->reference));
   }
   PetscCall(PetscFree(lift));
+  PetscFunctionReturn(0);
+}
+
+/* |R| over what is not prescribed, at du. */
+static PetscErrorCode Miss(Newton *n, PetscReal *norm)
+{
+  const StepProblem *p = n->problem;
+  const PetscInt dim = p->grid->dim;
+  NewtonReport report = {.bad_point = -1}, *kept = n->report;
+  PetscReal square = 0, sum;
+
+  PetscFunctionBeginUser;
+  n->report = &report;
+  PetscCall(NewtonAssemble(n, PETSC_FALSE));
+  n->report = kept;
+  for (PetscInt k = 0; k < p->system->n_active; ++k)
+    for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i)
+      if (!p->fixed[i]) square += PetscSqr(p->force[i]);
+  PetscCall(MPIU_Allreduce(&square, &sum, 1, MPIU_REAL, MPI_SUM, n->comm));
+  *norm = report.status == LAW_OK ? PetscSqrtReal(sum) : PETSC_MAX_REAL;
+  PetscFunctionReturn(0);
+}
+
+/* Statics, where a rough wall goes along itself: bodies that it carries are left behind by any guess but the last
+ * step's, slide on it everywhere then, and nothing tells how far they have to go. So first one step as if what it
+ * touches could not slide; where that leads farther off, as where a body is held and the wall passes it, du stays. */
+static PetscErrorCode Carry(Newton *n)
+{
+  StepProblem *p = n->problem;
+  Contact *contact = p->scene.contact;
+  const PetscInt dofs = p->grid->n_nodes * p->grid->dim;
+  PetscReal *before, miss[2];
+  PetscBool carries = PETSC_FALSE, solved;
+
+  PetscFunctionBeginUser;
+  if (contact && !p->pressure && !p->border && !contact->n_rigid) PetscCall(ContactCarries(contact, n->comm, &carries));
+  if (!carries) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(dofs, &before));
+  PetscCall(PetscArraycpy(before, p->du, dofs));
+  PetscCall(Miss(n, &miss[0]));
+  contact->grips = PETSC_TRUE;
+  PetscCall(NewtonAssemble(n, PETSC_TRUE));
+  contact->grips = PETSC_FALSE;
+  PetscCall(NewtonGetResidual(n, n->f));
+  if (n->report->status == LAW_OK) PetscCall(StepLinearly(n, &solved));
+  PetscCall(Miss(n, &miss[1]));
+  if (!(miss[1] < miss[0])) PetscCall(PetscArraycpy(p->du, before, dofs));
+  n->report->status = LAW_OK;
+  PetscCall(PetscFree(before));
   PetscFunctionReturn(0);
 }
 
@@ -177,20 +235,10 @@ static PetscErrorCode UpdateSaddle(Newton *n)
 
 PetscErrorCode NewtonMiss(Newton *n, StepProblem *p, PetscReal *norm)
 {
-  const PetscInt dim = p->grid->dim;
-  NewtonReport report = {.bad_point = -1};
-  PetscReal square = 0, sum;
-
   PetscFunctionBeginUser;
   n->problem = p;
-  n->report = &report;
   newton_rest_without_unknowns(p);
-  PetscCall(NewtonAssemble(n, PETSC_FALSE));
-  for (PetscInt k = 0; k < p->system->n_active; ++k)
-    for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i)
-      if (!p->fixed[i]) square += PetscSqr(p->force[i]);
-  PetscCall(MPIU_Allreduce(&square, &sum, 1, MPIU_REAL, MPI_SUM, n->comm));
-  *norm = report.status == LAW_OK ? PetscSqrtReal(sum) : PETSC_MAX_REAL;
+  PetscCall(Miss(n, norm));
   PetscFunctionReturn(0);
 }
 
@@ -221,6 +269,7 @@ static PetscErrorCode Iterate(Newton *n, NewtonReport *report, SNESConvergedReas
 
   PetscFunctionBeginUser;
   *reason = SNES_DIVERGED_LINEAR_SOLVE;
+  PetscCall(Carry(n));
   PetscCall(LiftPrescribed(n, &solved));
   if (solved) {
     PetscCall(NewtonGetUnknowns(n, n->x));
