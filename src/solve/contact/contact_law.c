@@ -43,7 +43,7 @@ PetscReal contact_most(const ContactLaw *law, PetscReal pressure)
 /* Stiffness along the way of what slides, over what sticks: the law has none, and a body that slides on all that holds
  * it, as a sample that widens between two platens, has nothing that tells where it stands. Newton's method is told a
  * trace of it; forces, by which it has converged or not, know none. */
-#define TRACE 1e-6
+#define TRACE 1e-7
 
 /* Where it slides along `way`, with a force `bound` that was to be `size`. */
 static void slide(const ContactLaw *law, const PetscReal n[3], const PetscReal way[3], PetscReal bound, PetscReal slope,
