@@ -149,7 +149,7 @@ static const SchemaEntry analysis_entries[] = {
     "mpm: points beside prescribed nodes keep the velocity that they bring, as thesis (2.16) is printed, so that what "
     "slides over a floor slides on; otherwise they take over the motion of these nodes",
     .fallback = "false", AT(AnalysisSpec, keep_velocity)),
-  KEY("unheld", WORD, NULL, "static: bodies that nothing holds in some direction, or from turning",
+  KEY("unheld", WORD, NULL, "static: bodies that nothing holds in some direction (or, for `hold`, from turning)",
       .words = unheld_words, .fallback = "refuse", AT(AnalysisSpec, unheld)),
   {.key = NULL},
 };
