@@ -226,6 +226,8 @@ PetscErrorCode ModelEquilibrate(Model *model, StepReport *report);
 /* Collective. Body force besides gravity, NULL for none. Before the first step it also enters the
  * initial acceleration. */
 PetscErrorCode ModelSetBodyForce(Model *model, BodyForce force, void *context);
+/* Warn of a case in which nothing happens, once all that its caller gives is known: start/advice/still.c. */
+void model_advise_still(const Model *model, Diag *diag);
 /* Collective. Factors of a load of the case that vary from place to place, NULL for none; likewise. */
 PetscErrorCode ModelSetLoadFactors(Model *model, PetscInt load, LoadFactors ask, void *context);
 

@@ -277,9 +277,8 @@ PetscErrorCode AdviseThin(const Model *model, Diag *diag);
 PetscErrorCode AdvisePulses(const Model *model, Diag *diag);
 /* The same of walls and held nodes that jump when dynamics begin: start/jumps.c. */
 void advise_jumps(const Model *model, Diag *diag);
-/* The same of names and signs that mislead about which way is down: down.c; of nothing that acts: still.c. */
+/* The same of names and signs that mislead about which way is down: down.c. */
 void advise_down(const Model *model, Diag *diag);
-void advise_still(const Model *model, Diag *diag);
 /* The same of prescribed nodes that stay while what they move passes them: passing.c. */
 void advise_passing(const Model *model, Diag *diag);
 /* The same of what would begin after the end: late.c. */

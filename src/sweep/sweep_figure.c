@@ -7,7 +7,12 @@
 #include "picture/figure.h"
 #include "sweep/sweep_private.h"
 
-static const char *label_of(const SweepKey *key) { return key->label ? key->label : sweep_short_key(key); }
+/* Of two keys with the same last word each goes by all of its words. */
+static const char *label_of(const SweepRun *s, const SweepKey *key)
+{
+  if (key->label) return key->label;
+  return sweep_is_ambiguous(s->sweep, key) ? key->key : sweep_short_key(key);
+}
 
 /* "cohesion = 10 Pa, dilatancy_angle = 2 deg" */
 static void name_curve(const SweepRun *s, PetscInt member, char name[256])
@@ -17,7 +22,7 @@ static void name_curve(const SweepRun *s, PetscInt member, char name[256])
   for (PetscInt a = 1; a < s->sweep->n_axes && used < 256; ++a) {
     const SweepKey *key = &s->sweep->axes[a].key;
     const char *unit = schema_unit(key->key);
-    used += (size_t)snprintf(name + used, 256 - used, "%s%s = %s%s%s", a > 1 ? ", " : "", label_of(key),
+    used += (size_t)snprintf(name + used, 256 - used, "%s%s = %s%s%s", a > 1 ? ", " : "", label_of(s, key),
                              key->value[sweep_at(s->sweep, member, a)], unit && unit[0] ? " " : "", unit ? unit : "");
   }
 }
@@ -55,7 +60,7 @@ static PetscErrorCode Draw(const SweepRun *s, PetscInt k, PetscInt n, const Figu
     bands[b] = (FigureBand){measure->bands[b].name, measure->bands[b].low, measure->bands[b].high};
   const Figure figure = {
     .title = s->sweep->title,
-    .x_label = text_with_unit(label_of(key), schema_unit(key->key), x),
+    .x_label = text_with_unit(label_of(s, key), schema_unit(key->key), x),
     .y_label = text_with_unit(measure->taken.label ? measure->taken.label : name, s->members.member[0].units[k], y),
     .n_series = n,
     .series = series,

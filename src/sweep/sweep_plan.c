@@ -56,8 +56,7 @@ static void check_axes(SweepRun *s, PetscInt *n)
   *n = (PetscInt)PetscMin(product, (double)SWEEP_MOST_MEMBERS);
 }
 
-/* Does another key end with the same word? Then both need their paths. */
-static PetscBool is_ambiguous(const SweepSpecification *sweep, const SweepKey *key)
+PetscBool sweep_is_ambiguous(const SweepSpecification *sweep, const SweepKey *key)
 {
   const SweepKey *other;
   PetscInt axis;
@@ -75,7 +74,7 @@ static void name_member(const SweepSpecification *sweep, PetscInt member, char n
   size_t used = 0;
   for (PetscInt k = 0; (key = sweep_key(sweep, k, &axis)) && used < 200; ++k)
     used += (size_t)snprintf(name + used, 256 - used, "%s%.80s=%.60s", k ? "," : "",
-                             is_ambiguous(sweep, key) ? key->key : sweep_short_key(key),
+                             sweep_is_ambiguous(sweep, key) ? key->key : sweep_short_key(key),
                              key->value[sweep_at(sweep, member, axis)]);
   for (char *c = name; *c; ++c)
     if (!isalnum((unsigned char)*c) && !strchr("._-+=,", *c)) *c = '_';

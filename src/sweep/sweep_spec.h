@@ -74,3 +74,5 @@ void sweep_key_error(const SweepKey *key, const YamlDocument *document, Diag *di
   PETSC_ATTRIBUTE_FORMAT(4, 5);
 /* "friction_angle" of materials.sugar.friction_angle */
 const char *sweep_short_key(const SweepKey *key);
+/* Does another key end with the same word, so that both need all of theirs? */
+PetscBool sweep_is_ambiguous(const SweepSpecification *sweep, const SweepKey *key);

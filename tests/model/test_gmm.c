@@ -244,6 +244,7 @@ static PetscInt warnings_at(PetscReal bottom)
   Model *m = NULL;
   gmm_init(&b, &usual_lme, CELL_QUADRILATERAL, 0.125);
   bench_dynamic(&b, 1, 0.01);
+  b.c.gravity[1] = -10;
   bench_box(&b, 0, (PetscReal[]){0.25, bottom, 0}, (PetscReal[]){0.75, bottom + 0.25, 1});
   bench_motion(&b, 1, 0, MOTION_FIXED, 7);
   CALL(DiagCreate(&diag));

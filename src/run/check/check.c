@@ -327,6 +327,7 @@ static PetscErrorCode CheckOne(MPI_Comm comm, const Case *c, Diag *diag, FILE *o
 
   PetscFunctionBeginUser;
   PetscCall(ModelCreate(comm, c, diag, &m));
+  if (m) model_advise_still(m, diag);
   if (!m) PetscFunctionReturn(0);
   if (c->spec) say(m, out, "# stage %d: %s\n", (int)c->stage + 1, c->spec->name);
   PetscCall(ReportSizes(m, diag, out));

@@ -4,7 +4,8 @@
 #define WALL_NUMBERS ((PetscInt)(sizeof(WallState) / sizeof(PetscReal)))
 #define RIGID_NUMBERS ((PetscInt)(sizeof(RigidState) / sizeof(PetscReal)))
 
-#define LEANS 0.1 /* a normal with such a share of an axis holds along it */
+#define NEXT_TO_NOTHING 1e-6 /* of the largest force */
+#define LEANS 0.1            /* a normal with such a share of an axis holds along it */
 
 PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **contact)
 {
@@ -66,17 +67,27 @@ static PetscErrorCode Begin(void *data, const NodalScene *scene)
 
 static PetscBool meets(const ContactPoint *c) { return (PetscBool)(c->touches || c->before != CONTACT_OPEN); }
 
+static PetscReal last_of(const ContactPoint *c)
+{
+  return PetscSqrtReal(PetscSqr(c->last[0]) + PetscSqr(c->last[1]) + PetscSqr(c->last[2]));
+}
+
 /* What touches a wall cannot leave through it, nor along it if it rubs. A wall that only pushes may turn out to hold
- * one way alone: whoever asks looks again after the run (ModelWarnLoose). */
+ * one way alone: whoever asks looks again after the run (ModelWarnLoose), when what touches and bears next to nothing
+ * has been left behind, but for round-off. */
 static void hold(const void *data, const NodalScene *scene, unsigned char *held)
 {
   const Contact *s = data;
+  PetscReal largest = 0;
   (void)scene;
-  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
-    for (PetscInt e = c->first; e < c->first + c->n && meets(c) && !contact_rigid(s, c); ++e)
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) largest = PetscMax(largest, last_of(c));
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    if (!meets(c) || contact_rigid(s, c) || last_of(c) < NEXT_TO_NOTHING * largest) continue;
+    for (PetscInt e = c->first; e < c->first + c->n; ++e)
       for (PetscInt d = 0; d < s->dim; ++d)
         if (c->law.kind != CONTACT_FRICTIONLESS || PetscAbsReal(c->normal[d]) > LEANS)
           held[s->node[e] * s->dim + d] = 1;
+  }
 }
 
 static PetscBool find_slots(void *data, const System *system)

@@ -116,6 +116,18 @@ static PetscErrorCode FindHeld(const Model *m, PetscInt *held)
   PetscFunctionReturn(0);
 }
 
+/* How a body is held whose loads are in balance. What rubs already does not touch it yet, as where a round body meets a
+ * wall in one point. */
+static const char *balance_hint(const Model *m)
+{
+  PetscBool rubs = case_has_contact(m->c, CONTACT_STICK);
+  for (PetscInt k = 0; k < m->c->n_walls; ++k) rubs |= m->c->walls[k].friction > 0;
+  for (PetscInt k = 0; k < m->c->n_interfaces; ++k) rubs |= m->c->interfaces[k].friction > 0;
+  if (!m->contact) return "analysis: {unheld: hold}";
+  return rubs ? "let it reach a thousandth of a cell into what is to hold it by friction"
+              : "friction: 1e-5 on what it touches";
+}
+
 /* What nothing holds: a mistake at the start, a warning at the end. */
 static PetscErrorCode TellLoose(const Model *m, PetscBool ends, Diag *diag)
 {
@@ -144,7 +156,7 @@ static PetscErrorCode TellLoose(const Model *m, PetscBool ends, Diag *diag)
       diag_hint(diag,
                 "fix a boundary that the body touches in %s, or let it move: analysis: {type: dynamic}; if its loads "
                 "are in balance: %s",
-                directions, m->contact ? "friction: 1e-5 on what it touches" : "analysis: {unheld: hold}");
+                directions, balance_hint(m));
     }
   }
   PetscCall(PetscFree(held));

@@ -3,9 +3,10 @@
 
 static PetscBool is_zero(const PetscReal v[3]) { return (PetscBool)(v[0] == 0 && v[1] == 0 && v[2] == 0); }
 
-static PetscBool something_acts(const Case *c)
+static PetscBool something_acts(const Model *m)
 {
-  PetscBool acts = (PetscBool)(c->stage > 0 || c->initial.run || c->n_loads || !is_zero(c->gravity));
+  const Case *c = m->c;
+  PetscBool acts = (PetscBool)(m->body_force || c->stage > 0 || c->initial.run || c->n_loads || !is_zero(c->gravity));
   for (PetscInt k = 0; k < c->n_boundary; ++k) acts |= c->boundary[k].kind != MOTION_FIXED;
   for (PetscInt k = 0; k < c->n_walls; ++k) acts |= c->walls[k].n_motions || c->walls[k].has_mass;
   for (PetscInt k = 0; k < c->n_materials; ++k) acts |= c->materials[k].n_amplitudes > 0;
@@ -14,9 +15,9 @@ static PetscBool something_acts(const Case *c)
   return acts;
 }
 
-void advise_still(const Model *m, Diag *diag)
+void model_advise_still(const Model *m, Diag *diag)
 {
-  if (something_acts(m->c)) return;
+  if (something_acts(m)) return;
   diag_warning(diag, "loads",
                "nothing acts on what is here: there is no gravity, load, prescribed motion, velocity or stress at the "
                "start");
