@@ -74,7 +74,7 @@ static PetscReal last_of(const ContactPoint *c)
 
 /* What touches a wall cannot leave through it, nor along it if it rubs. A wall that only pushes may turn out to hold
  * one way alone: whoever asks looks again after the run (ModelWarnLoose), when what touches and bears next to nothing
- * has been left behind, but for round-off. */
+ * has been left behind, but for round-off; before, what touches may still come to bear. */
 static void hold(const void *data, const NodalScene *scene, unsigned char *held)
 {
   const Contact *s = data;
@@ -82,7 +82,7 @@ static void hold(const void *data, const NodalScene *scene, unsigned char *held)
   (void)scene;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) largest = PetscMax(largest, last_of(c));
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (!meets(c) || contact_rigid(s, c) || last_of(c) < NEXT_TO_NOTHING * largest) continue;
+    if (!meets(c) || contact_rigid(s, c) || (s->over && last_of(c) < NEXT_TO_NOTHING * largest)) continue;
     for (PetscInt e = c->first; e < c->first + c->n; ++e)
       for (PetscInt d = 0; d < s->dim; ++d)
         if (c->law.kind != CONTACT_FRICTIONLESS || PetscAbsReal(c->normal[d]) > LEANS)

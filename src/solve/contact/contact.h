@@ -97,6 +97,7 @@ typedef struct Contact {
   PetscReal length; /* of a cell, m: scale of gaps */
   ContactShare share;
   PetscBool grips; /* for a first guess: what was in contact goes along with its wall */
+  PetscBool over;  /* is the run over? What bears nothing holds nothing then */
   /* n_partners x n_bodies: of friction and adhesion where that body meets this partner; 0: it does not slide */
   PetscReal *divisor;
   WallState *wall;

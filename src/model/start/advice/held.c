@@ -184,6 +184,8 @@ PetscErrorCode ModelWarnLoose(Model *m, Diag *diag)
   if (!m->contact || m->c->analysis.type != ANALYSIS_STATIC || m->c->analysis.unheld == UNHELD_HOLD || !m->step)
     PetscFunctionReturn(0);
   PetscCall(ModelInitialise(m));
+  m->contact->over = PETSC_TRUE;
   PetscCall(TellLoose(m, PETSC_TRUE, diag));
+  m->contact->over = PETSC_FALSE;
   PetscFunctionReturn(0);
 }
