@@ -1,8 +1,8 @@
 /* How ranks wait for each other where there are more of them than cores. Open MPI calls sched_yield() then, again and
  * again. A core on which something else computes is gone for a slice of the scheduler each time, some milliseconds for
  * every message. So in talus's own programs this stands before the C library's: once a yield has taken that long, the
- * next ones nap, and what wakes up goes before what computes. Three ranks of model/test_rings on two cores beside one
- * busy process: 17 s for more than 120; alone 6.5 s with it and without. */
+ * next ones nap, and what wakes up goes before what computes. Three runs of the self-weight on three ranks, two cores
+ * beside one busy process: 17 s for 119 without naps. Two such rows at once: 10 s for 13. */
 #ifdef __linux__
 #include <sched.h>
 #include <sys/prctl.h>
@@ -11,8 +11,8 @@
 #include <unistd.h>
 
 #define LONG_YIELD 1e-3 /* s */
-#define NAPS 1000       /* before it tries to yield again */
-#define NAP 20000       /* ns */
+#define NAPS 100        /* before it tries to yield again: with 1000, two runs of three ranks on two cores took 2.5 times as long */
+#define NAP 50000       /* ns */
 
 static double seconds(void)
 {

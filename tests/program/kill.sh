@@ -52,7 +52,8 @@ span=$((($(date +%s%N) - start_time) / 1000000))
 
 done_runs=0 killed=0 in_write=0 again=0 one_rank=0 n=0
 rm -rf run
-while [ "$killed" -lt "$kills" ] || [ -e run ]; do
+# Kills may all come before there is anything to resume: one run, at least, comes to its end.
+while [ "$killed" -lt "$kills" ] || [ "$done_runs" -eq 0 ] || [ -e run ]; do
   n=$((n + 1))
   [ $n -lt $((20 * kills + 20)) ] || { fail "the run gets nowhere"; break; }
   if [ -s run/case.yaml ] && [ -e run/log.txt ]; then start "$talus" run --resume run --quiet
