@@ -83,10 +83,11 @@ function(talus_shared_rooms)
   set_target_properties(talus_library PROPERTIES OUTPUT_NAME talus_rooms LINKER_LANGUAGE C)
 endfunction()
 
-# One thread a rank, Open MPI willing to start as root and with more ranks than cores, and quick to start: no network, and
-# no daemon for a process by itself.
+# One thread a rank, Open MPI willing to start as root and with more ranks than cores, and quick to start: no network, no
+# daemon for a process by itself, and no look for graphics cards (an eighth of a start, of which the tests make thousands).
 set(TALUS_TEST_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
-  OPENBLAS_NUM_THREADS=1 OMPI_MCA_pml=ob1 OMPI_MCA_btl=self,vader OMPI_MCA_ess_singleton_isolated=1)
+  OPENBLAS_NUM_THREADS=1 OMPI_MCA_pml=ob1 OMPI_MCA_btl=self,vader OMPI_MCA_ess_singleton_isolated=1
+  HWLOC_COMPONENTS=linux,stop HWLOC_PLUGINS_PATH=/nonexistent)
 set(TALUS_TEST_PATIENCE 1) # times the usual time limits
 if(TALUS_SANITIZE)
   set(TALUS_TEST_PATIENCE 4)

@@ -407,7 +407,10 @@ stages:
 END
 for ranks in 1 2 3; do
   expect "weight that is carried on $ranks" 0 on_ranks $ranks "$talus" run carried.yaml --out carried --force --quiet
-  for step in $(seq 1 $(awk -F, 'END { print $2 - 1 }' carried/history.csv)); do
+  # at every step on one rank, in the middle stage on several
+  steps=3
+  [ $ranks != 1 ] || steps=$(seq 1 $(awk -F, 'END { print $2 - 1 }' carried/history.csv))
+  for step in $steps; do
     rm -rf cut && cp -r carried cut && forget cut "$step"
     expect "weight that is carried on $ranks, resumed at $step" 0 on_ranks $ranks "$talus" run --resume cut --quiet
     if [ $ranks = 1 ]; then same_bits "$name" carried cut; else same_answer "$name" carried cut; fi
