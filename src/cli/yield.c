@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #define LONG_YIELD 1e-3 /* s */
-#define NAPS 100        /* before it tries to yield again: with 1000, two runs of three ranks on two cores took 2.5 times as long */
+#define NAPS 100        /* before it tries to yield again; 1000: two runs of three ranks take 2.5 times as long */
 #define NAP 50000       /* ns */
 
 static double seconds(void)

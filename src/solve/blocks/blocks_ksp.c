@@ -187,6 +187,17 @@ static PetscErrorCode Refine(KSP ksp, Blocks *m, Mat A)
   PetscFunctionReturn(0);
 }
 
+/* What the iteration did not solve, by factors; KSP_CONVERGED_ITS tells it (LinearSolved in solve/newton). */
+static PetscErrorCode Rescue(KSP ksp, Blocks *m, const PetscReal *b, PetscReal *u)
+{
+  PetscBool solved;
+
+  PetscFunctionBeginUser;
+  PetscCall(BlocksFactorSolve(m, b, u, &solved));
+  if (solved) ksp->reason = KSP_CONVERGED_ITS;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode KSPSolve_Blocks(KSP ksp)
 {
   Blocks *m;
@@ -210,10 +221,15 @@ static PetscErrorCode KSPSolve_Blocks(KSP ksp)
   const unsigned mode = denormals_flush();
   if (m->projection) PetscCall(BlocksSolveProjected(ksp, m, b, u, &ksp->its, &ksp->reason));
   else PetscCall(SolveOnBlocks(ksp, m, b, u, &indefinite));
+  denormals_restore(mode);
+  if (ksp->reason < 0 && *(PetscBool *)ksp->data && !m->projection) PetscCall(Rescue(ksp, m, b, u));
   PetscCall(VecRestoreArrayWrite(ksp->vec_sol, &u));
   PetscCall(VecRestoreArrayRead(ksp->vec_rhs, &b));
-  if (indefinite && ksp->reason > 0) PetscCall(Refine(ksp, m, A));
-  denormals_restore(mode);
+  if (indefinite && ksp->reason > 0 && ksp->reason != KSP_CONVERGED_ITS) {
+    const unsigned again = denormals_flush();
+    PetscCall(Refine(ksp, m, A));
+    denormals_restore(again);
+  }
   PetscFunctionReturn(0);
 }
 
@@ -242,7 +258,11 @@ static PetscErrorCode KSPView_Blocks(KSP ksp, PetscViewer viewer)
 
 static PetscErrorCode KSPCreate_Blocks(KSP ksp)
 {
+  PetscBool *may_factor;
+
   PetscFunctionBeginUser;
+  PetscCall(PetscNew(&may_factor));
+  ksp->data = may_factor;
   PetscCall(KSPSetSupportedNorm(ksp, KSP_NORM_PRECONDITIONED, PC_LEFT, 2));
   PetscCall(KSPSetSupportedNorm(ksp, KSP_NORM_NONE, PC_LEFT, 1));
   ksp->ops->setup = KSPSetUp_Blocks;
@@ -258,5 +278,12 @@ PetscErrorCode BlocksRegister(void)
 {
   PetscFunctionBeginUser;
   PetscCall(KSPRegister(KSPBLOCKS, KSPCreate_Blocks));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BlocksMayFactor(KSP ksp, PetscBool may)
+{
+  PetscFunctionBeginUser;
+  *(PetscBool *)ksp->data = may;
   PetscFunctionReturn(0);
 }

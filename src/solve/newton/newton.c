@@ -8,8 +8,11 @@
 /* percent: LinearProblem.room */
 #define FIRST_ROOM 100
 #define MOST_ROOM 1000
-/* where failures followed each other: steps of the direct solver before the next chance */
-#define FORGIVEN_AFTER 50
+/* where failures followed each other: steps of the direct solver before the next chance, twice as many each time */
+#define DIRECT_FIRST 2
+#define DIRECT_MOST 64
+/* solves that could be left to factors for what one costs that the iteration tried in vain */
+#define RESCUE_COSTS 8
 
 PetscErrorCode NewtonCreate(MPI_Comm comm, const NewtonSpec *spec, Newton **newton)
 {
@@ -41,6 +44,15 @@ void newton_times(const Newton *n, PetscReal *points, PetscReal *matrix, PetscRe
   *linear = n->t_linear;
   *rest = n->t_newton;
 }
+
+/* Steps of the direct solver after the last failure: each costs as much as the linear iterations that failed. */
+static PetscInt direct_steps(const Newton *n)
+{
+  if (n->failures < NEWTON_FAILURES) return 0;
+  return PetscMin(DIRECT_MOST, DIRECT_FIRST << PetscMin(n->failures - NEWTON_FAILURES, 10));
+}
+
+PetscBool newton_distrusts(const Newton *n) { return (PetscBool)(n->since < direct_steps(n)); }
 
 void newton_get_memory(const Newton *n, const System *system, NewtonMemory *memory)
 {
@@ -302,6 +314,11 @@ static PetscErrorCode Explain(Newton *n, SNESConvergedReason reason, NewtonRepor
   PetscFunctionReturn(0);
 }
 
+static PetscBool costs_too_much(const Newton *n, const NewtonReport *report)
+{
+  return (PetscBool)(n->rescues * RESCUE_COSTS > report->iterations);
+}
+
 static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonReport *report)
 {
   const StepProblem *p = n->problem;
@@ -316,7 +333,7 @@ static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonRe
   newton_rest_without_unknowns(p);
   n->before = n->last = 0;
   n->search.enough = p->stiff ? ENOUGH_STIFF : ENOUGH;
-  n->changes = n->changed = 0;
+  n->changes = n->changed = n->rescues = 0;
   PetscCall(EliminationBegin(&n->elimination, p));
   PetscCall(UpdateSaddle(n));
   PetscCall(UpdateProjection(n));
@@ -332,7 +349,7 @@ static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonRe
   n->anew = n->retry && n->stale;
   if (n->retry && !n->anew && !linear_factor_fits(linear)) n->retry = PETSC_FALSE, report->reason = no_room;
   if (n->retry) n->built = -1; /* with other set-ups, or another solver */
-  n->failures += n->retry && !n->anew;
+  if ((n->retry && !n->anew) || costs_too_much(n, report)) ++n->failures, n->since = 0;
   if (reason == SNES_DIVERGED_LINEAR_SOLVE && n->direct) PetscCall(LeaveMoreRoom(n, &n->retry));
   PetscFunctionReturn(0);
 }
@@ -364,12 +381,11 @@ PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linea
     PetscCall(NewtonTry(n, linear, report));
     report->lost = lost;
   }
-  if (again) {
-    n->built = n->failures < NEWTON_FAILURES ? -1 : n->built;
-    n->since = 0;
-  } else if (n->failures && ++n->since >= (n->failures < NEWTON_FAILURES ? ISOLATED_AFTER : FORGIVEN_AFTER)) {
-    if (n->failures >= NEWTON_FAILURES) n->built = -1;
-    n->failures = n->since = 0;
+  if (again || costs_too_much(n, report)) {
+    n->built = -1;
+  } else if (n->failures) {
+    if (++n->since == direct_steps(n)) n->built = -1; /* iterate again */
+    if (n->since >= direct_steps(n) + ISOLATED_AFTER) n->failures = n->since = 0;
   }
   PetscCall(PetscFree3(guess, pressure, walls));
   PetscFunctionReturn(0);

@@ -37,6 +37,7 @@ struct Newton {
   Projection *projection;
   PetscInt failures; /* of the iterative solver, not yet forgiven */
   PetscInt since;    /* steps since the last of them */
+  PetscInt rescues;  /* solves of this step that a factorisation ended */
   PetscBool retry;   /* this try takes the direct solver */
   PetscBool calm;    /* did the first iteration of the last solve leave next to nothing (newton_fell)? */
   PetscBool idle;    /* was the last first guess the solution? */
@@ -93,6 +94,8 @@ PetscErrorCode NewtonFunction(SNES snes, Vec x, Vec f, void *context);
 PetscErrorCode NewtonJacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner, void *context);
 
 /* newton_eliminate.c. May it, for this problem? And what the line search then does; context: the Newton. */
+/* Has the iterative solver failed so often that the next step is left to a factorisation? */
+PetscBool newton_distrusts(const Newton *n);
 PetscBool newton_eliminates(const StepProblem *p, const LinearProblem *linear);
 PetscErrorCode NewtonChoose(void *context, PetscInt iteration, Vec f, PetscReal norm);
 PetscErrorCode NewtonSettle(void *context, Vec x);

@@ -20,10 +20,13 @@ PetscErrorCode NewtonReset(Newton *n)
 static PetscErrorCode LinearSolved(KSP ksp, Vec b, Vec x, void *context)
 {
   Newton *n = context;
+  KSPConvergedReason reason;
   double end;
 
-  (void)ksp, (void)b, (void)x;
+  (void)b, (void)x;
   PetscFunctionBeginUser;
+  PetscCall(KSPGetConvergedReason(ksp, &reason));
+  n->rescues += !n->direct && reason == KSP_CONVERGED_ITS; /* blocks_ksp.c */
   PetscCall(PetscTime(&end));
   n->t_linear += end - n->solving;
   PetscFunctionReturn(0);
@@ -86,7 +89,7 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   if (n->remembered == p->system->builds) chosen.courant = n->courant;
   n->courant = chosen.courant;
   n->remembered = -1;
-  if ((n->retry && !n->anew) || n->failures >= NEWTON_FAILURES) chosen.choice = LINEAR_DIRECT;
+  if ((n->retry && !n->anew) || newton_distrusts(n)) chosen.choice = LINEAR_DIRECT;
   chosen.room = n->room;
   PetscCall(LinearForm(&chosen, &form));
   n->projects = chosen.multipliers && form == SYSTEM_BLOCKS;

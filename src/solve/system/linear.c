@@ -52,6 +52,7 @@ static PetscErrorCode UseBlocks(KSP ksp, const LinearProblem *p, const char **wh
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PCSetType(pc, PCNONE)); /* it is in the method */
   PetscCall(KSPSetType(ksp, KSPBLOCKS));
+  PetscCall(BlocksMayFactor(ksp, linear_factor_fits(p)));
   PetscCall(KSPSetTolerances(ksp, 1e-4, PETSC_DEFAULT, PETSC_DEFAULT, 500));
   *what = p->symmetric ? "conjugate gradients, symmetric Gauss-Seidel" : "BiCGStab, symmetric Gauss-Seidel";
   PetscFunctionReturn(0);
