@@ -1,7 +1,7 @@
 /* What a floor costs as a wall, beside the same floor as held nodes: a column of 3600 grains' points that runs out,
  * without friction on nodes that slide, with 0.6 on nodes that stick.
  *
- *   build/bench/bench_walls [-steps 150] [-friction 0.6] [-case cases/dry-column/case.yaml]
+ *   build/bench/bench_walls [-steps 150] [-friction 0.6] [-size 0.003] [-case cases/dry-column/case.yaml]
  *
  * Both take turns, ten steps at a time, in seconds that a core worked for this process. Iterations and assemblies
  * (passes over all points) are counts, the same on every machine: those of the wall may be 1.3 times those of the
@@ -35,15 +35,17 @@ static PetscErrorCode AssembleCounted(const WeakFormInput *in, WeakFormOutput *o
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Begin(const char *file, PetscBool wall, PetscReal friction, Floor *f)
+static PetscErrorCode Begin(const char *file, PetscReal size, PetscBool wall, PetscReal friction, Floor *f)
 {
-  char law[64], held[160];
+  char grid[128], law[64], held[160];
   const char *const set[N_SET] = {
-    "grid={box: {min: [0, -0.009], max: [0.72, 0.111]}, size: 0.003, cell: quadrilateral}",
+    grid,
     "bodies=[{name: column, shape: {box: {min: [0, 0], max: [0.09, 0.09]}}, points_per_cell: 4, material: grains}]",
     "measures=null", law, held};
 
   PetscFunctionBeginUser;
+  snprintf(grid, sizeof grid, "grid={box: {min: [0, -0.009], max: [0.72, 0.111]}, size: %g, cell: quadrilateral}",
+           (double)size);
   snprintf(law, sizeof law, wall ? "walls[0].friction=%g" : "walls=null", (double)friction);
   snprintf(held, sizeof held,
            "boundary=[{name: back, on: {boundary: left}, fix: [x]}, {name: low, on: {y: %s}, fix: [%s]}]",
@@ -89,12 +91,12 @@ static void print_row(PetscReal friction, const Floor f[2])
   fflush(stdout);
 }
 
-static PetscErrorCode Compare(const char *file, PetscReal friction, PetscInt steps)
+static PetscErrorCode Compare(const char *file, PetscReal size, PetscReal friction, PetscInt steps)
 {
   Floor f[2];
 
   PetscFunctionBeginUser;
-  for (int k = 0; k < 2; ++k) PetscCall(Begin(file, (PetscBool)k, friction, f + k));
+  for (int k = 0; k < 2; ++k) PetscCall(Begin(file, size, (PetscBool)k, friction, f + k));
   for (PetscInt until = TURN; until <= steps; until += TURN) {
     for (int k = 0; k < 2; ++k) PetscCall(Advance(f + k, until));
     if (until == steps / 3 / TURN * TURN || until == steps) print_row(friction, f);
@@ -110,18 +112,19 @@ static PetscErrorCode Compare(const char *file, PetscReal friction, PetscInt ste
 int main(int argc, char **argv)
 {
   char file[PETSC_MAX_PATH_LEN] = "cases/dry-column/case.yaml";
-  PetscReal friction = 0.6;
+  PetscReal friction = 0.6, size = 0.003;
   PetscInt steps = 150;
 
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
   PetscCall(PetscOptionsGetInt(NULL, NULL, "-steps", &steps, NULL));
   PetscCall(PetscOptionsGetReal(NULL, NULL, "-friction", &friction, NULL));
+  PetscCall(PetscOptionsGetReal(NULL, NULL, "-size", &size, NULL));
   PetscCall(PetscOptionsGetString(NULL, NULL, "-case", file, sizeof file, NULL));
   steps = PetscMax(TURN, steps / TURN * TURN);
   printf(
     "friction  steps  Newton: nodes, wall, ratio  passes: nodes, wall, ratio  seconds: nodes, wall, ratio  halvings\n");
-  PetscCall(Compare(file, 0, steps));
-  PetscCall(Compare(file, friction, steps));
+  PetscCall(Compare(file, size, 0, steps));
+  PetscCall(Compare(file, size, friction, steps));
   PetscCall(PetscFinalize());
   return 0;
 }

@@ -406,4 +406,59 @@ says err.txt "warning: steps shear the grains by 0.01" "take half of it and comp
 expect "steps of a quarter" 0 "$talus" run case.yaml --out run --force --quiet --set analysis.step=2e-3
 lacks err.txt "shear the grains"
 
+# --- cells whose points do not hold a uniform stress: skew ones of mpm in statics, uneven nodes of gmm ---
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {mesh: mesh.msh}
+bodies: [{name: block, region: all, points_per_cell: 4, material: rubber}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary:
+  - {name: left, on: {x: 0}, fix: [x, y]}
+  - {name: right, on: {x: 1}, displacement: {x: 1e-3, y: 0}}
+END
+# mesh X: four quadrilaterals of a square with its middle node at x = X, y = 0.5
+mesh() {
+  cat >mesh.msh <<END
+\$MeshFormat
+2.2 0 8
+\$EndMeshFormat
+\$PhysicalNames
+1
+2 1 "all"
+\$EndPhysicalNames
+\$Nodes
+9
+1 0 0 0
+2 $1 0 0
+3 1 0 0
+4 0 0.5 0
+5 $2 0.5 0
+6 1 0.5 0
+7 0 1 0
+8 $1 1 0
+9 1 1 0
+\$EndNodes
+\$Elements
+4
+1 3 2 1 1 1 2 5 4
+2 3 2 1 1 2 3 6 5
+3 3 2 1 1 4 5 8 7
+4 3 2 1 1 5 6 9 8
+\$EndElements
+END
+}
+mesh 0.5 0.6
+warned "skew cells" "points share skew cells equally" "weights: gauss" --
+warned "skew cells with the weights of Gauss" -- --set 'bodies[0].weights=gauss'
+warned "skew cells of fem" -- --set method=fem
+warned "skew cells, clouds" -- --set method=gmm
+mesh 0.2 0.2
+warned "narrow cells are parallelograms" --
+for ranks in 1 2; do
+  expect "uneven clouds on $ranks" 0 on_ranks $ranks "$talus" check case.yaml --set method=gmm
+  says err.txt "nodes of gmm at uneven distances: its points have from 0.025 to 0.1 m2" "fem is exact on the same mesh"
+done
+
 finish

@@ -199,6 +199,7 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
       if (!strcmp(m->c->bodies[b].material, m->c->materials[i].name)) advise_locking(m, &m->c->bodies[b], i, diag);
   PetscCall(AdviseSharing(m, diag));
   PetscCall(AdviseThin(m, diag));
+  PetscCall(AdviseCells(m, diag));
   PetscCall(AdvisePulses(m, diag));
   advise_down(m, diag);
   advise_passing(m, diag);
