@@ -4,16 +4,6 @@
 #include "solve/newton/newton_private.h"
 #include <petsctime.h>
 
-#define ISOLATED_AFTER 10 /* steps after which a failure of the iterative solver counts no more */
-/* percent: LinearProblem.room */
-#define FIRST_ROOM 100
-#define MOST_ROOM 1000
-/* where failures followed each other: steps of the direct solver before the next chance, twice as many each time */
-#define DIRECT_FIRST 2
-#define DIRECT_MOST 64
-/* solves that could be left to factors for what one costs that the iteration tried in vain */
-#define RESCUE_COSTS 8
-
 PetscErrorCode NewtonCreate(MPI_Comm comm, const NewtonSpec *spec, Newton **newton)
 {
   PetscFunctionBeginUser;
@@ -44,15 +34,6 @@ void newton_times(const Newton *n, PetscReal *points, PetscReal *matrix, PetscRe
   *linear = n->t_linear;
   *rest = n->t_newton;
 }
-
-/* Steps of the direct solver after the last failure: each costs as much as the linear iterations that failed. */
-static PetscInt direct_steps(const Newton *n)
-{
-  if (n->failures < NEWTON_FAILURES) return 0;
-  return PetscMin(DIRECT_MOST, DIRECT_FIRST << PetscMin(n->failures - NEWTON_FAILURES, 10));
-}
-
-PetscBool newton_distrusts(const Newton *n) { return (PetscBool)(n->since < direct_steps(n)); }
 
 void newton_get_memory(const Newton *n, const System *system, NewtonMemory *memory)
 {
@@ -254,22 +235,6 @@ PetscErrorCode NewtonMiss(Newton *n, StepProblem *p, PetscReal *norm)
   PetscFunctionReturn(0);
 }
 
-/* Spread over ranks, factors outgrow the estimate of their size now and then: they get more room. */
-static PetscErrorCode LeaveMoreRoom(Newton *n, PetscBool *more)
-{
-  KSP ksp;
-  PC pc;
-  PCFailedReason why;
-
-  PetscFunctionBeginUser;
-  PetscCall(SNESGetKSP(n->snes, &ksp));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCGetFailedReason(pc, &why));
-  *more = n->direct && why == PC_FACTOR_OUTMEMORY && n->room < MOST_ROOM;
-  if (*more) n->room = n->room ? 3 * n->room : FIRST_ROOM;
-  PetscFunctionReturn(0);
-}
-
 /* A factorisation for which the machines have no room would end the run without a word. */
 static const char no_room[] = "the linear iteration failed, and a factorisation needs more memory than there is";
 
@@ -314,11 +279,6 @@ static PetscErrorCode Explain(Newton *n, SNESConvergedReason reason, NewtonRepor
   PetscFunctionReturn(0);
 }
 
-static PetscBool costs_too_much(const Newton *n, const NewtonReport *report)
-{
-  return (PetscBool)(n->rescues * RESCUE_COSTS > report->iterations);
-}
-
 static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonReport *report)
 {
   const StepProblem *p = n->problem;
@@ -349,8 +309,8 @@ static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonRe
   n->anew = n->retry && n->stale;
   if (n->retry && !n->anew && !linear_factor_fits(linear)) n->retry = PETSC_FALSE, report->reason = no_room;
   if (n->retry) n->built = -1; /* with other set-ups, or another solver */
-  if ((n->retry && !n->anew) || costs_too_much(n, report)) ++n->failures, n->since = 0;
-  if (reason == SNES_DIVERGED_LINEAR_SOLVE && n->direct) PetscCall(LeaveMoreRoom(n, &n->retry));
+  newton_count_failure(n, report);
+  if (reason == SNES_DIVERGED_LINEAR_SOLVE && n->direct) PetscCall(NewtonLeaveMoreRoom(n, &n->retry));
   PetscFunctionReturn(0);
 }
 
@@ -381,12 +341,7 @@ PetscErrorCode NewtonSolve(Newton *n, StepProblem *p, const LinearProblem *linea
     PetscCall(NewtonTry(n, linear, report));
     report->lost = lost;
   }
-  if (again || costs_too_much(n, report)) {
-    n->built = -1;
-  } else if (n->failures) {
-    if (++n->since == direct_steps(n)) n->built = -1; /* iterate again */
-    if (n->since >= direct_steps(n) + ISOLATED_AFTER) n->failures = n->since = 0;
-  }
+  newton_count_step(n, report, again);
   PetscCall(PetscFree3(guess, pressure, walls));
   PetscFunctionReturn(0);
 }

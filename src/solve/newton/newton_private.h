@@ -6,9 +6,6 @@
 #include "solve/blocks/projection.h"
 #include "solve/system/saddle.h"
 
-/* of the iterative solver, one soon after another: the direct one stays for a while */
-#define NEWTON_FAILURES 3
-
 struct Newton {
   MPI_Comm comm;
   NewtonSpec spec;
@@ -93,9 +90,15 @@ void newton_rest_without_unknowns(const StepProblem *p);
 PetscErrorCode NewtonFunction(SNES snes, Vec x, Vec f, void *context);
 PetscErrorCode NewtonJacobian(SNES snes, Vec x, Mat matrix, Mat preconditioner, void *context);
 
-/* newton_eliminate.c. May it, for this problem? And what the line search then does; context: the Newton. */
-/* Has the iterative solver failed so often that the next step is left to a factorisation? */
+/* newton_trust.c. Has the iterative solver failed so often that the next step is left to a factorisation? */
 PetscBool newton_distrusts(const Newton *n);
+/* A try of the step has ended; the step has: `again`, after more than one of them. */
+void newton_count_failure(Newton *n, const NewtonReport *report);
+void newton_count_step(Newton *n, const NewtonReport *report, PetscBool again);
+/* Collective. After a factorisation that failed: may the next one have more memory? */
+PetscErrorCode NewtonLeaveMoreRoom(Newton *n, PetscBool *more);
+
+/* newton_eliminate.c. May it, for this problem? And what the line search then does; context: the Newton. */
 PetscBool newton_eliminates(const StepProblem *p, const LinearProblem *linear);
 PetscErrorCode NewtonChoose(void *context, PetscInt iteration, Vec f, PetscReal norm);
 PetscErrorCode NewtonSettle(void *context, Vec x);
