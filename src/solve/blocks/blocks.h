@@ -112,7 +112,7 @@ PetscErrorCode BlocksRegister(void);
 /* May a solve that does not reach its tolerance be done by factors (KSP_CONVERGED_ITS)? No, unless told. */
 PetscErrorCode BlocksMayFactor(KSP ksp, PetscBool may);
 /* Collective. A u = b by factors in double precision of the matrix as it is; b and u: numbers of this rank's rows.
- * PETSC_FALSE: it is singular (blocks_factor.c). */
+ * PETSC_FALSE: it is singular, or no matrix of numbers (blocks_factor.c). */
 PetscErrorCode BlocksFactorSolve(Blocks *m, const PetscReal *b, PetscReal *u, PetscBool *solved);
 /* Collective. f = K u under m->projection, with the tolerances and monitors of `asked`; its is
  * added to. */

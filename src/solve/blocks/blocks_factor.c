@@ -93,6 +93,7 @@ PetscErrorCode BlocksFactorSolve(Blocks *m, const PetscReal *b, PetscReal *u, Pe
   Vec right, left;
   PetscReal *values;
   const PetscReal *z;
+  PetscReal size;
   KSPConvergedReason reason;
 
   PetscFunctionBeginUser;
@@ -109,7 +110,8 @@ PetscErrorCode BlocksFactorSolve(Blocks *m, const PetscReal *b, PetscReal *u, Pe
   PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   PetscCall(KSPSolve(ksp, right, left));
   PetscCall(KSPGetConvergedReason(ksp, &reason));
-  *solved = (PetscBool)(reason > 0);
+  PetscCall(VecNorm(left, NORM_2, &size));
+  *solved = (PetscBool)(reason > 0 && !PetscIsInfOrNanReal(size));
   PetscCall(VecGetArrayRead(left, &z));
   if (*solved && m->symmetric) PetscCall(Scale(m, PETSC_TRUE, z, u));
   else if (*solved) PetscCall(PetscArraycpy(u, z, m->n * m->dim));

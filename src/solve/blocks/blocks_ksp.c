@@ -221,15 +221,11 @@ static PetscErrorCode KSPSolve_Blocks(KSP ksp)
   const unsigned mode = denormals_flush();
   if (m->projection) PetscCall(BlocksSolveProjected(ksp, m, b, u, &ksp->its, &ksp->reason));
   else PetscCall(SolveOnBlocks(ksp, m, b, u, &indefinite));
-  denormals_restore(mode);
   if (ksp->reason < 0 && *(PetscBool *)ksp->data && !m->projection) PetscCall(Rescue(ksp, m, b, u));
   PetscCall(VecRestoreArrayWrite(ksp->vec_sol, &u));
   PetscCall(VecRestoreArrayRead(ksp->vec_rhs, &b));
-  if (indefinite && ksp->reason > 0 && ksp->reason != KSP_CONVERGED_ITS) {
-    const unsigned again = denormals_flush();
-    PetscCall(Refine(ksp, m, A));
-    denormals_restore(again);
-  }
+  if (indefinite && ksp->reason > 0 && ksp->reason != KSP_CONVERGED_ITS) PetscCall(Refine(ksp, m, A));
+  denormals_restore(mode);
   PetscFunctionReturn(0);
 }
 
