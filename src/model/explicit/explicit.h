@@ -71,6 +71,7 @@ typedef struct Explicit {
   PetscInt taken;
   PetscBool begins, ends; /* is the substep the lap's first, its last? */
   PetscReal critical;     /* substep, s, when it was last asked for, */
+  PetscReal crossing;     /* and the time in which a wave crosses a cell along all its axes, s, */
   PetscInt since;         /* so many substeps ago */
   PetscReal fastest;      /* of the points, m/s */
   LawStatus status;

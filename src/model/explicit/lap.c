@@ -217,7 +217,7 @@ PetscErrorCode LapBegin(Model *m, Explicit *e, PetscReal left)
   PetscCall(See(m, e));
   if (e->critical == 0 || e->since >= LAP_MOST) {
     PetscCall(NonlocalStep(m));
-    PetscCall(ExplicitCritical(m, &e->critical, &e->fastest));
+    PetscCall(ExplicitCritical(m, &e->critical, &e->crossing, &e->fastest));
     e->since = 0;
   }
   heavy_limit(m, e);

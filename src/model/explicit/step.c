@@ -4,7 +4,7 @@
  * Who knows the method reads Substep; the rest divides the run's step and keeps its accounts. */
 #include "model/explicit/explicit.h"
 
-/* Of a critical substep (docs/theory.md, "Gradients that points carry"): who follows faster than the unseen fades
+/* In the time in which a wave crosses a cell (docs/theory.md, "Gradients that points carry"): who follows faster than the unseen fades
  * becomes unstable where a node is hardly reached. */
 #define UNSEEN 0.02
 #define FOLLOW 0.01
@@ -15,8 +15,8 @@ static PetscErrorCode Kick(Model *m, Explicit *e)
   PetscFunctionBeginUser;
   e->kick = (e->before + e->dt) / 2;
   e->fade = 1 - PetscExpReal(-m->c->analysis.damping * e->kick);
-  e->unseen = e->slopes ? 1 - PetscExpReal(-UNSEEN * e->kick / e->critical) : 0;
-  e->follow = 1 - PetscExpReal(-FOLLOW * e->dt / e->critical);
+  e->unseen = e->slopes ? 1 - PetscExpReal(-UNSEEN * e->kick / e->crossing) : 0;
+  e->follow = 1 - PetscExpReal(-FOLLOW * e->dt / e->crossing);
   if (e->begins || !e->box) points_gather(m, e); /* mass, momentum and forces of the nodes */
   PetscCall(ForcesBegin(m, e));
   PetscCall(NodesShare(m, e->width, e->sum));

@@ -88,13 +88,13 @@ static void advise_wall(const Model *m, PetscInt k, const Pace *forces, Diag *di
 PetscErrorCode AdvisePulses(const Model *m, Diag *diag)
 {
   const Case *c = m->c;
-  PetscReal step = c->analysis.step, critical, fastest;
+  PetscReal step = c->analysis.step, critical, crossing, fastest;
   char path[96], load[64];
 
   PetscFunctionBeginUser;
   if (!m->scheme->inertia || !(step > 0)) PetscFunctionReturn(0);
   if (c->analysis.type == ANALYSIS_EXPLICIT) {
-    PetscCall(ExplicitCritical(m, &critical, &fastest));
+    PetscCall(ExplicitCritical(m, &critical, &crossing, &fastest));
     step = PetscMin(step, case_courant(&c->analysis) * critical);
   }
   const Pace forces = {.first = c->start + (m->scheme->middle ? step / 2 : 0), .step = step};

@@ -205,11 +205,11 @@ static PetscInt substeps_of_a_step(const Model *m) { return explicit_by_arithmet
 static PetscErrorCode ReportSubsteps(const Model *m, FILE *out)
 {
   const PetscBool explicit = m->c->analysis.type == ANALYSIS_EXPLICIT;
-  PetscReal critical, fastest;
+  PetscReal critical, crossing, fastest;
 
   PetscFunctionBeginUser;
   if (!m->scheme->inertia || !m->method->restores_grid || m->formulation->pressure) PetscFunctionReturn(0);
-  PetscCall(ExplicitCritical(m, &critical, &fastest));
+  PetscCall(ExplicitCritical(m, &critical, &crossing, &fastest));
   const PetscReal substep = case_courant(&m->c->analysis) * critical, n = PetscCeilReal(m->control.next / substep);
   say(m, out, "#   explicit: %.3g s a substep, %.0f %s in a step of %g s: %s than an implicit step\n", (double)substep,
       (double)n, explicit ? "of them" : "with `type: explicit`", (double)m->control.next,

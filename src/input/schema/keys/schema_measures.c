@@ -134,6 +134,8 @@ static const SchemaEntry mean_entries[] = {WINDOW("the mean over time of"), {.ke
 static const SchemaTable mean = {.name = "mean", .help = "What a measure is on the average.", .entries = mean_entries};
 
 /* --- a measure --- */
+#define MOST_KEYS 96
+
 static SchemaEntry entry_of(const Measure *measure)
 {
   static const SchemaEntry takes[] = {
@@ -157,6 +159,13 @@ static SchemaEntry entry_of(const Measure *measure)
   return entry;
 }
 
+static PetscInt n_measures(void)
+{
+  PetscInt n = 0;
+  while (measures[n]) ++n;
+  return n;
+}
+
 static SchemaEntry measure_entry(PetscInt i)
 {
   static const SchemaEntry beside[] = {
@@ -177,9 +186,11 @@ static SchemaEntry measure_entry(PetscInt i)
     KEY("mean", TABLE, NULL, "what it is on the average, instead of it", .table = &mean, GIVEN(MeasureSpec, has_mean)),
     {.key = NULL},
   };
-  PetscInt n = 0;
-  while (n < i && measures[n]) ++n;
-  return measures[n] ? entry_of(measures[n]) : beside[i - n];
+  static SchemaEntry made[MOST_KEYS]; /* once: whoever reads a table asks for each many times */
+  static PetscInt n;
+  for (; !n || made[n - 1].key; ++n)
+    made[n] = n < n_measures() ? entry_of(measures[n]) : beside[n - n_measures()];
+  return made[i];
 }
 
 /* Keys that belong to some numbers only: must or may they stand beside this one? */
