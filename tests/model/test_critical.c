@@ -32,7 +32,8 @@ static void multiply(PetscInt dim, const PetscReal h[3], PetscReal poisson, cons
   PetscReal H[3][3] = {{0}}, s[3][3], trace = 0;
   for (PetscInt I = 0; I < corners; ++I)
     for (PetscInt i = 0; i < dim; ++i)
-      for (PetscInt d = 0; d < dim; ++d) H[i][d] += x[I * dim + i] * (I >> d & 1 ? 2 : -2) / (h[d] * (PetscReal)corners);
+      for (PetscInt d = 0; d < dim; ++d)
+        H[i][d] += x[I * dim + i] * (I >> d & 1 ? 2 : -2) / (h[d] * (PetscReal)corners);
   for (PetscInt d = 0; d < dim; ++d) trace += H[d][d];
   for (PetscInt i = 0; i < dim; ++i)
     for (PetscInt d = 0; d < dim; ++d) s[i][d] = mu * (H[i][d] + H[d][i]) + (i == d ? lambda * trace : 0);

@@ -119,12 +119,12 @@ static PetscErrorCode Create(const NodalScene *scene, Diag *diag, void **data)
   PetscFunctionReturn(0);
 }
 
-/* Distance of the material point from its surface at the end of the step: that of where both have gone,
- * so that the next step starts with the gap that this one ends with. */
+/* Distance of the material point from its surface at the end of the step, along the normal there: that of where both
+ * have gone, so that the next step starts with the gap that this one ends with. */
 static PetscReal reach_at_end(const Contact *s, const ContactPoint *c, const NodalScene *scene)
 {
   const PetscReal first = scene->points->real[POINT_REACH][c->owner];
-  PetscReal reach = c->reach;
+  PetscReal reach = c->ahead;
   for (PetscInt e = c->first; e < c->first + c->own; ++e)
     for (PetscInt d = 0; d < s->dim; ++d) reach -= c->normal[d] * s->lead[e] * scene->du[s->node[e] * s->dim + d];
   return PetscMax(THINNEST * first, PetscMin(contact_farthest(scene->points, c->owner), reach));

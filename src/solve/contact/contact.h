@@ -23,7 +23,8 @@ typedef struct {
   PetscInt own;        /* so many, are of its own body, others of the other one, */
   PetscInt slot;       /* and the first of their n x n pairs */
   PetscReal spread;    /* sum of their |N|: it moves by no more than that times what the nodes do */
-  PetscReal reach;     /* from the material point to its surface, at the start of the step, m */
+  PetscReal reach;     /* from the material point to its surface, at the start of the step, m; */
+  PetscReal ahead;     /* and of that what counts along the normal at the last assembly */
   PetscReal x[3];      /* at the start of the step, m */
   PetscReal swept[3];  /* what the wall's matter there moves by in the step, m; */
   PetscReal passes[3]; /* and that which is there in its middle: forces times it are work, torques times angles alike */

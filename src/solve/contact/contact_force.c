@@ -12,12 +12,12 @@ void contact_place(const Contact *s, const ContactPoint *c, const PetscReal *du,
 
 /* A place in the wall, beside a corner, may be nearer to another face than that which the material came to: it would be
  * pushed out there, in every step anew. Then the owner, which stands outside, sees the wall for it. */
-static PetscBool see_wall(const Contact *s, const ContactPoint *c, PetscReal t, const PetscReal x[3], WallPlace *place)
+static PetscBool see_wall(const Contact *s, ContactPoint *c, PetscReal t, const PetscReal x[3], WallPlace *place)
 {
   PetscReal along = 0, owner[3];
   if (!wall_near(s->walls, c->wall, t, x, 2 * s->near, c->side, place)) return PETSC_FALSE;
   for (int d = 0; d < 3; ++d) along += place->normal[d] * c->facing[d];
-  if (along > ROUND_CORNER) return PETSC_TRUE;
+  if (along > ROUND_CORNER) return c->ahead = along * c->reach, PETSC_TRUE;
   for (int d = 0; d < 3; ++d) owner[d] = x[d] + c->reach * c->facing[d];
   if (!wall_near(s->walls, c->wall, t, owner, 2 * s->near + c->reach, c->side, place)) return PETSC_FALSE;
   place->gap -= c->reach;
@@ -25,7 +25,7 @@ static PetscBool see_wall(const Contact *s, const ContactPoint *c, PetscReal t, 
 }
 
 /* The wall as the contact point sees it at x, or the other body: a plane that goes with it. */
-static PetscBool place_of(const Contact *s, const ContactPoint *c, PetscReal t, const PetscReal x[3], WallPlace *place)
+static PetscBool place_of(const Contact *s, ContactPoint *c, PetscReal t, const PetscReal x[3], WallPlace *place)
 {
   if (c->wall < s->n_walls) return see_wall(s, c, t, x, place);
   *place = (WallPlace){.gap = c->open};
@@ -52,6 +52,7 @@ PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *sce
   if (rigid) rigid_sweep(rigid, c->x, x, c->swept);
   for (int d = 0; d < 3 && rigid; ++d) c->passes[d] = c->swept[d];
   stay_open(c);
+  c->ahead = c->reach;
   if (!place_of(s, c, scene->end, x, &place)) return PETSC_FALSE;
   for (int d = 0; d < 3; ++d) c->slip[d] = x[d] - c->x[d] - c->swept[d], c->normal[d] = place.normal[d];
   c->gap = place.gap;

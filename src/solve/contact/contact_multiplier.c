@@ -94,6 +94,7 @@ void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, C
     c->law.penalty = STIFFER * cell;
     c->law.along = (share.flows && c->law.kind == CONTACT_FRICTION ? ALONG_FLOWS : STIFFER) * cell;
     c->stiffest = stiffest_of(s, c);
+    c->ahead = c->reach;
     c->left = 0;
     c->spread = spread_of(s, c);
     for (int d = 0; d < 3; ++d) c->struck[d] = c->lent[d] = 0;

@@ -188,8 +188,7 @@ static SchemaEntry measure_entry(PetscInt i)
   };
   static SchemaEntry made[MOST_KEYS]; /* once: whoever reads a table asks for each many times */
   static PetscInt n;
-  for (; !n || made[n - 1].key; ++n)
-    made[n] = n < n_measures() ? entry_of(measures[n]) : beside[n - n_measures()];
+  for (; !n || made[n - 1].key; ++n) made[n] = n < n_measures() ? entry_of(measures[n]) : beside[n - n_measures()];
   return made[i];
 }
 

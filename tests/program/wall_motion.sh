@@ -1,0 +1,75 @@
+#!/bin/sh
+# Walls that move: what turns with one stays as it is, and an initial equilibrium knows nothing of what comes later.
+. "$(dirname "$0")/library.sh"
+
+cat >turns.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, end: 1, steps: 9}
+grid: {box: {min: [-1, -1], max: [1, 1]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [-0.5, -0.5], max: [0.5, 0.5]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+walls:
+  - {name: w, shape: {box: {min: [-0.5, -0.5], max: [0.5, 0.5]}}, inside: true, contact: bonded, motion: [{rotation: {centre: [0, 0], rate: 1.5707963267948966}}]}
+measures: {sxx: {stress: xx, of: {body: b}}, syy: {stress: yy, of: {body: b}}, volume: {volume: current}}
+output: {fields: [displacement], every: end}
+END
+cat >space.txt <<'END'
+grid={box: {min: [-1, -1, -1], max: [1, 1, 1]}, size: 0.25}
+bodies=[{name: b, shape: {box: {min: [-0.5, -0.5, -0.5], max: [0.5, 0.5, 0.5]}}, material: m}]
+walls=[{name: w, shape: {box: {min: [-0.5, -0.5, -0.5], max: [0.5, 0.5, 0.5]}}, inside: true, contact: bonded, motion: [{rotation: {centre: [0, 0, 0], axis: [1, 2, 3], rate: 1.5}}]}]
+END
+# By a right angle: nothing is strained. A thousandth of a pascal is 1e-9 of the modulus.
+free() {
+  awk -F, 'NR > 1 && ($3 * $3 > 1e-6 || $4 * $4 > 1e-6 || ($5 - 1) ^ 2 > 1e-16) { bad = 1 } END { exit bad || NR < 10 }' turns/history.csv ||
+    fail "$name: $(tail -n 1 turns/history.csv)"
+}
+for way in "mpm bonded 1" "fem bonded 1" "gmm bonded 1" "mpm frictionless 1" "fem stick 1" "mpm bonded 2" "mpm bonded 3"; do
+  set -- $way
+  expect "turns, $way" 0 on_ranks $3 "$talus" run turns.yaml --out turns --force --quiet --set method=$1 --set walls[0].contact=$2
+  free
+done
+expect "turns in space" 0 "$talus" run turns.yaml --out turns --force --quiet --set method=fem --set kinematics=3d --set "$(sed -n 1p space.txt)" \
+  --set "$(sed -n 2p space.txt)" --set "$(sed -n 3p space.txt)"
+free
+
+# A block that bears its stress, under a lid that goes along it from the start on, by 0.01 in all: shear G 0.01 at the
+# end, a share of it in each step, and none before.
+cat >sheared.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, end: 1, steps: 4}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, material: m, stress: {yy: "-300"}}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0}}
+boundary: [{on: {boundary: bottom}, fix: [x, y]}]
+walls: [{name: w, shape: {half-space: {point: [0, 1], normal: [0, -1]}}, contact: bonded, motion: [{velocity: {x: 0.01}}]}]
+measures: {fx: {wall_force: x, of: {wall: w}}, fy: {wall_force: y, of: {wall: w}}}
+output: {fields: [displacement], every: end}
+END
+expect "no lid has moved" 0 "$talus" run sheared.yaml --out sheared --force --quiet --set initial.equilibrium=none
+cp sheared/history.csv none.csv
+for ranks in 1 3; do
+  expect "the lid moves, $ranks" 0 on_ranks $ranks "$talus" run sheared.yaml --out sheared --force --quiet
+  awk -F, 'NR == 2 && ($3 * $3 > 1e-12 || ($4 + 300) ^ 2 > 1e-12) { bad = 1 }
+    NR == FNR { fx[FNR] = $3; next } FNR > 2 && ($3 - fx[FNR]) ^ 2 > 1e-12 * fx[FNR] ^ 2 { bad = 1 } END { exit bad }' sheared/history.csv none.csv ||
+    fail "$name: $(cat sheared/history.csv none.csv)"
+done
+# Sand at rest beside a rough wall that will go down: no friction before it has.
+cat >sand.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, end: 1, steps: 4}
+grid: {box: {min: [-0.5, 0], max: [3, 1.5]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [3, 1]}}, material: m, k0: 0.5}]
+materials: {m: {law: mohr-coulomb, density: 2000, young: 1e7, poisson: 0.3, friction_angle: 35, cohesion: 500}}
+boundary: [{on: {boundary: bottom}, fix: [x, y]}, {on: {boundary: right}, fix: [x]}]
+loads: {gravity: [0, -10]}
+walls: [{name: w, shape: {half-space: {point: [0, 0], normal: [1, 0]}}, friction: 0.4, motion: [{velocity: {y: -0.001}}]}]
+measures: {fx: {wall_force: x, of: {wall: w}}, fy: {wall_force: y, of: {wall: w}}}
+output: {fields: [displacement], every: end}
+END
+expect "sand at rest" 0 "$talus" run sand.yaml --out sand --force --quiet
+awk -F, 'NR == 2 { exit !(($3 - 5000) ^ 2 < 1e-6 && $4 * $4 < 1e-6) }' sand/history.csv || fail "$name: $(cat sand/history.csv)"
+awk -F, 'END { exit !($4 < -0.39 * $3) }' sand/history.csv || fail "$name: friction $(tail -n 1 sand/history.csv)"
+finish
