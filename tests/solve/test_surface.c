@@ -39,13 +39,18 @@ static void close_body(Body *b)
   qsort(b->point, (size_t)b->surface.n, sizeof *b->point, compare);
 }
 
-/* Points of a block along (c, s) from u0 to u1, from w0 to w1 across; turned about the origin. */
-static void block(Body *b, PetscReal angle, PetscReal u0, PetscReal u1, PetscReal w0, PetscReal w1, PetscReal size)
+/* More points: along (c, s) from u0 to u1, from w0 to w1 across; turned about the origin. */
+static void add_block(Body *b, PetscReal angle, PetscReal u0, PetscReal u1, PetscReal w0, PetscReal w1, PetscReal size)
 {
   const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle);
-  b->surface.n = 0;
   for (PetscReal u = u0 + 0.5 * size; u < u1; u += size)
     for (PetscReal w = w0 + 0.5 * size; w < w1; w += size) add(b, c * u - s * w, s * u + c * w, size);
+}
+
+static void block(Body *b, PetscReal angle, PetscReal u0, PetscReal u1, PetscReal w0, PetscReal w1, PetscReal size)
+{
+  b->surface.n = 0;
+  add_block(b, angle, u0, u1, w0, w1, size);
   close_body(b);
 }
 
@@ -177,11 +182,52 @@ static void test_cover(void **state)
   }
 }
 
+/* Of those that are near: all across one of three sides, at the distance that it has. */
+static void check_trough(const Body *a, const Body *b, PetscReal angle, PetscReal left, PetscReal below,
+                         PetscReal right)
+{
+  const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle);
+  SurfacePair pair;
+  int sides[3] = {0, 0, 0};
+  for (const SurfacePoint *p = a->point; p < a->point + a->surface.n; ++p) {
+    if (!surface_meet(&a->surface, p, &b->surface, 0.2, &pair) || pair.gap > 0.5 * p->size + 0.11) continue;
+    const PetscReal n[2] = {c * pair.normal[0] + s * pair.normal[1], c * pair.normal[1] - s * pair.normal[0]};
+    const int side = PetscAbsReal(n[1]) > 0.9 ? 1 : n[0] * (left < 0 ? -1 : 1) > 0 ? 0 : 2;
+    const PetscReal gap = side == 1 ? PetscAbsReal(below) : side ? PetscAbsReal(right) : PetscAbsReal(left);
+    assert_true(PetscMin(PetscAbsReal(n[0]), PetscAbsReal(n[1])) < 1e-9);
+    assert_true(PetscAbsReal(pair.gap - p->reach - gap) < 1e-9);
+    ++sides[side];
+  }
+  for (int k = 0; k < 3; ++k) assert_true(sides[k] >= 6);
+}
+
+/* A block that stands in a trough: the corners of one are in those of the other, at any angle, fitting and not, and
+ * whichever comes first. */
+static void test_trough(void **state)
+{
+  static Body core, trough;
+  static const PetscReal gaps[] = {0, 0.02, 0.1};
+  (void)state;
+  for (int k = 0; k < 24; ++k)
+    for (int g = 0; g < 3; ++g) {
+      const PetscReal angle = 0.27 * k, gap = gaps[g];
+      block(&core, angle, 0, 0.8 - 1e-9, 0, 0.8, 0.1);
+      trough.surface.n = 0;
+      add_block(&trough, angle, -gap - 0.3, -gap - 1e-9, -gap - 0.3, 0.9, 0.1);
+      add_block(&trough, angle, 0.8 + gap, 1.1 + gap, -gap - 0.3, 0.9, 0.1);
+      add_block(&trough, angle, -gap, 0.8 + gap - 1e-9, -gap - 0.3, -gap - 1e-9, 0.1);
+      close_body(&trough);
+      check_trough(&core, &trough, angle, gap, gap, gap);
+      check_trough(&trough, &core, angle, -gap, gap, gap);
+    }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_planes), cmocka_unit_test(test_corner), cmocka_unit_test(test_circles),
     cmocka_unit_test(test_sunk),   cmocka_unit_test(test_edges),  cmocka_unit_test(test_cover),
+    cmocka_unit_test(test_trough),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

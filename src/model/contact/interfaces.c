@@ -113,6 +113,8 @@ static PetscErrorCode FitInterface(Model *m, const SurfaceInput *in, const Petsc
   snprintf(path, sizeof path, "interfaces[%d]", (int)k);
   diag_error(diag, path, "'%s' goes through '%s' at the start: its point at (%g, %g) m is %.3g m inside", s->between[0],
              s->between[1], (double)worst.x[0], (double)worst.x[1], (double)-deepest);
+  diag_hint(diag, "of a body that stands around the other one, name it first: `between: [%s, %s]`", s->between[1],
+            s->between[0]);
   PetscFunctionReturn(0);
 }
 

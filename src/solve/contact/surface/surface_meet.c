@@ -11,6 +11,10 @@
 #define FLAT 1e-12
 #define WAYS 32          /* in which hulls that overlap are asked how far they are from being apart */
 #define OUTSTANDING 0.05 /* of a point's size: how much farther out makes up for standing that far aside */
+#define BESIDE \
+  1.175 /* of a point's size: neighbours are within it (1.15 of Gauss points), those across a corner not (1.2) */
+#define DEEPER 0.05   /* of a point's size: by more than that a side is none, as of points that stand in steps */
+#define IN_FRONT 0.25 /* of a point's size: what stands so far before a surface belongs to another side */
 
 /* Points around a place; disks are so much wider than the smallest. */
 typedef struct {
@@ -216,21 +220,86 @@ static PetscBool choose(const Part *b, const SurfacePoint *p, SurfacePair *pair)
   return least < PETSC_MAX_REAL;
 }
 
+/* Of a part a point and its neighbours. */
+static void beside(const Part *part, const SurfacePoint *p, Part *beside)
+{
+  beside->n = 0;
+  beside->least = PETSC_MAX_REAL;
+  for (PetscInt k = 0; k < part->n; ++k) {
+    if (square(part->point[k]->x, p->x) > PetscSqr(BESIDE * p->size)) continue;
+    beside->point[beside->n++] = part->point[k];
+    beside->least = PetscMin(beside->least, part->point[k]->reach);
+  }
+}
+
+/* Of a part what does not stand before the surface of q. */
+static PetscBool clear_front(const Part *part, const SurfacePoint *q, const PetscReal n[2], Part *clear)
+{
+  clear->n = 0;
+  clear->least = PETSC_MAX_REAL;
+  for (PetscInt k = 0; k < part->n; ++k) {
+    const SurfacePoint *s = part->point[k];
+    if ((s->x[0] - q->x[0]) * n[0] + (s->x[1] - q->x[1]) * n[1] > IN_FRONT * q->size) continue;
+    clear->point[clear->n++] = s;
+    clear->least = PetscMin(clear->least, s->reach);
+  }
+  return (PetscBool)(clear->n < part->n);
+}
+
+/* Both ways that n can be known: across the hulls of both parts; */
+typedef struct {
+  PetscReal n[2];
+  Part theirs; /* what of the other body counts */
+} Way;
+
+/* and, where something is before the side that p meets, which a body does that stands round a corner of the other one
+ * and has two sides there, across what is behind the side as p and its neighbours and those of q see it. */
+static PetscBool take_side(const SurfacePoint *p, const Part *mine, const SurfacePoint *q, const Part *theirs,
+                           const PetscReal whole[2], Way *way)
+{
+  const PetscReal deepest = 0.5 * (p->size + q->size);
+  PetscReal back[2] = {-whole[0], -whole[1]};
+  Part near, far;
+  const PetscBool turns = clear_front(theirs, q, whole, &way->theirs);
+  if (!clear_front(mine, p, back, &near) && !turns) return PETSC_FALSE;
+  beside(mine, p, &near);
+  beside(theirs, q, &far);
+  face_each_other(&near, &far, deepest, way->n);
+  for (int i = 0; i < 2; ++i) back[i] = -way->n[i];
+  (void)clear_front(theirs, q, way->n, &way->theirs);
+  (void)clear_front(mine, p, back, &near);
+  face_each_other(&near, &way->theirs, deepest, way->n);
+  return PETSC_TRUE;
+}
+
+/* What p meets that way, and how far its own surface is from there. */
+static PetscBool meet_way(const SurfacePoint *p, const Part *mine, const Part *theirs, const PetscReal n[2],
+                          SurfacePair *pair, PetscReal *gap)
+{
+  *pair = (SurfacePair){.normal = {n[0], n[1]}};
+  if (is_behind(mine, p, n) || !choose(theirs, p, pair)) return PETSC_FALSE;
+  *gap = pair->gap - contact_reach(p->F, pair->normal, p->first, p->corner, 2);
+  return PETSC_TRUE;
+}
+
 PetscBool surface_meet(const Surface *a, const SurfacePoint *p, const Surface *b, PetscReal h, SurfacePair *pair)
 {
   Part mine, theirs;
-  PetscReal least;
+  Way way;
+  SurfacePair other;
+  PetscReal least, gap, farther;
   const SurfacePoint *q = nearest_of(b, p->x, 3 * h, &least);
   if (!q || least > h + p->reach + q->reach + p->size) return PETSC_FALSE;
   part_around(a, q->x, least + h, &mine);
   part_around(b, p->x, least + h, &theirs);
   const PetscReal scale = least > 0 ? 1 / least : 0; /* 0: one lies on the other, and any way will do */
-  PetscReal *n = pair->normal;
-  n[0] = scale > 0 ? scale * (p->x[0] - q->x[0]) : 1;
-  n[1] = scale * (p->x[1] - q->x[1]);
-  n[2] = 0;
+  PetscReal n[2] = {scale > 0 ? scale * (p->x[0] - q->x[0]) : 1, scale * (p->x[1] - q->x[1])};
+  for (int i = 0; i < 2; ++i) way.n[i] = n[i];
   face_each_other(&mine, &theirs, 0.5 * (p->size + q->size), n);
-  if (is_behind(&mine, p, pair->normal) || !choose(&theirs, p, pair)) return PETSC_FALSE;
+  PetscBool meets = meet_way(p, &mine, &theirs, n, pair, &gap);
+  if (take_side(p, &mine, q, &theirs, n, &way) && meet_way(p, &mine, &way.theirs, way.n, &other, &farther))
+    if (!meets || farther > PetscMin(gap, 0) - DEEPER * p->size) *pair = other, meets = PETSC_TRUE;
+  if (!meets) return PETSC_FALSE;
   pair->cover = surface_cover(a, p, b, pair);
   return pair->cover > 0;
 }
