@@ -231,9 +231,20 @@ static const YamlNode *find(const Search *s, const IdleKey *key, PetscInt k, Pet
   return list && list->kind == YAML_SEQUENCE && i < list->n ? node_at(list->child[i], key->key) : NULL;
 }
 
+/* A body moves as it is told when it comes, if that stage has inertia. */
+static PetscBool comes_moving(const Search *s, PetscInt k, PetscInt i)
+{
+  for (PetscInt j = k; j < case_stages(s->c); ++j) {
+    const Case *c = case_stage(s->c, j);
+    if (i < c->n_bodies && !c->bodies[i].absent) return has_inertia(c, i);
+  }
+  return PETSC_TRUE;
+}
+
 /* Has it an effect in the stage, or in a later one that still has it? */
 static PetscBool works_from(const Search *s, const IdleKey *key, PetscInt k, PetscInt i)
 {
+  if (key->list && !strcmp(key->list, "bodies")) return comes_moving(s, k, i);
   for (PetscInt j = k; j < case_stages(s->c); ++j) {
     const YamlNode *node = find(s, key, j, i);
     if (node && node->stage == k && key->works(case_stage(s->c, j), i)) return PETSC_TRUE;

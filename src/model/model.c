@@ -242,6 +242,8 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   for (PetscInt k = 0; k < c->n_measures; ++k)
     m->points->components[POINT_CARRIED] += measure_find(c->measures[k].kind)->events != NULL;
   PetscCall(PointsSeedOutlined(m->points, m->grid, c, seed, m->method->restores_grid, outline, diag));
+  /* nothing moves in statics, nor in a stage after it because a body was told to at the start */
+  if (!m->scheme->inertia) PetscCall(PetscArrayzero(m->points->real[POINT_V], m->points->n * m->dim));
   PetscCall(PetscFree2(seed, initial));
   PetscFunctionReturn(0);
 }
@@ -301,7 +303,8 @@ static PetscErrorCode CreateTracers(Model *m, Diag *diag)
       point_real(m->tracers, POINT_X, i)[d] = s->tracer[d];
       point_real(m->tracers, POINT_XI, i)[d] = xi[d];
     }
-    if (m->c->n_bodies) body_velocity(m->c->bodies + body, m->dim, s->tracer, point_real(m->tracers, POINT_V, i));
+    if (m->c->n_bodies && m->scheme->inertia)
+      body_velocity(m->c->bodies + body, m->dim, s->tracer, point_real(m->tracers, POINT_V, i));
   }
   PetscFunctionReturn(0);
 }

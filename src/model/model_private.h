@@ -195,8 +195,10 @@ PetscReal rigid_work(const Model *model);
 PetscReal rigid_lost(const Model *model);
 /* Back to the step's start. */
 void rigid_back(Model *model);
-/* Those that were there before stand still: the energy of motion that this takes, J. */
-PetscReal rigid_halt(Model *model, const Case *from);
+/* When a stage begins: those that were there before stand still. */
+void rigid_halt(Model *model, const Case *from);
+/* Before that: the energy of motion that the account of the case before has of them, J; statics have none. */
+PetscReal rigid_motion_before(const Model *model, const Case *from);
 /* Fastest of their centres, m/s. */
 PetscReal rigid_fastest(const Model *model);
 /* Collective. external += the forces of contact that material remembers, on owners: walls go on pressing as they did,

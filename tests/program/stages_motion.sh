@@ -224,4 +224,41 @@ for ranks in 1 2; do
   expect "layers on $ranks" 0 on_ranks $ranks "$talus" run layers.yaml --out layers --force --quiet
   awk -F, 'END { for (k = 3; k <= 5; ++k) if (!($k < 1e-9)) exit 1 }' layers/history.csv || fail "$name: $(tail -n 1 layers/history.csv)"
 done
+# What moves, and when: statics have no motion, and what comes with a stage brings its own into the accounts.
+cat >comes.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, end: 0.01, steps: 1}
+grid: {box: {min: [0, 0], max: [1, 3]}, size: 0.25}
+bodies:
+  - {name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, material: e}
+  - {name: c, shape: {box: {min: [0, 2], max: [1, 2.5]}}, material: e, velocity: [0, -1], absent: true}
+materials: {e: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0}}
+boundary:
+  - {name: bottom, on: {boundary: bottom}, fix: [x, y]}
+  - {name: left, on: {boundary: left}, fix: [x]}
+  - {name: right, on: {boundary: right}, fix: [x]}
+walls:
+  - {name: ball, shape: {box: {min: [-0.5, 1.25], max: [1.5, 1.75]}}, mass: {mass: 100, velocity: [0, -1], free: [y]}, absent: true}
+stages:
+  - {name: one}
+  - {name: two, analysis: {type: dynamic, end: 0.01, step: 1e-3}, walls: [{name: ball, absent: false}], bodies: [{name: c, absent: false}]}
+measures: {ek: {energy: kinetic}, balance: {energy: balance}}
+output: {fields: [displacement], every: end}
+END
+# 250 J of a body and 50 of a wall, from a stage of statics and from one of dynamics.
+for ranks in 1 2; do
+  for first in static dynamic; do
+    expect "comes after $first, $ranks" 0 on_ranks $ranks "$talus" run comes.yaml --out comes --force --quiet --set "analysis={type: $first, end: 0.01, step: 0.01}"
+    ! grep -q "no effect here" err.txt || fail "$name: $(cat err.txt)"
+    awk -F, 'END { exit !(($4 - 300) ^ 2 < 1e-8 && $5 * $5 < 1e-16) }' comes/history.csv || fail "$name: $(tail -n 1 comes/history.csv)"
+  done
+done
+expect "moves in statics" 0 "$talus" run comes.yaml --out comes --force --quiet --set 'bodies[0].velocity=[0, -1]'
+says err.txt "bodies[0].velocity has no effect here: statics has no inertia"
+awk -F, 'NR == 2 { first = $4 } END { exit !(first == 0 && ($4 - 300) ^ 2 < 1e-8 && $5 * $5 < 1e-16) }' comes/history.csv || fail "$name: $(cat comes/history.csv)"
+# An equilibrium minds no wall with mass that comes later.
+expect "a wall that comes after an equilibrium" 0 "$talus" check comes.yaml --set 'bodies[0].k0=0.5' --set 'loads={gravity: [0, -10]}'
+expect "a wall that is there" 2 "$talus" check comes.yaml --set 'bodies[0].k0=0.5' --set 'loads={gravity: [0, -10]}' --set 'walls[0].absent=false'
+says err.txt "an initial equilibrium knows nothing of walls with mass, as 'ball' is" "until then"
 finish

@@ -1,19 +1,31 @@
 /* Walls with mass in the accounts of a model. */
+#include <string.h>
 #include "model/model_private.h"
 
 static PetscInt count(const Model *m) { return m->contact ? m->contact->n_rigid : 0; }
 
-static void refuse(const Model *m, const char *key, const char *what, Diag *diag)
+/* Of one that is there, and not to come with a later stage. */
+static void refuse(const Model *m, const char *key, const char *what, const char *instead, Diag *diag)
 {
-  diag_error(diag, key, "%s knows nothing of walls with mass, as '%s' is", what,
-             m->c->walls[m->contact->rigid[0].wall].name);
+  for (PetscInt k = 0; k < count(m); ++k) {
+    const WallSpec *wall = &m->c->walls[m->contact->rigid[k].wall];
+    if (wall->absent) continue;
+    diag_error(diag, key, "%s knows nothing of walls with mass, as '%s' is", what, wall->name);
+    diag_hint(diag, "%s", instead);
+    return;
+  }
 }
 
 void rigid_check(const Model *m, Diag *diag)
 {
-  if (!count(m)) return;
-  if (case_seeks(&m->c->analysis)) refuse(m, "analysis", "the search for a factor of safety or a limit load", diag);
-  if (m->c->initial.equilibrium > EQUILIBRIUM_NONE) refuse(m, "initial", "an initial equilibrium", diag);
+  if (case_seeks(&m->c->analysis))
+    refuse(m, "analysis", "the search for a factor of safety or a limit load",
+           "without `mass` it stands where it is, or moves as `motion` says", diag);
+  if (m->c->initial.equilibrium > EQUILIBRIUM_NONE)
+    refuse(m, "initial", "an initial equilibrium",
+           "let it come with the next stage (`absent: true` until then), or begin without one: "
+           "`initial: {equilibrium: none}`",
+           diag);
 }
 
 PetscReal rigid_motion(const Model *m)
@@ -42,15 +54,19 @@ void rigid_back(Model *m)
   for (PetscInt k = 0; k < count(m); ++k) rigid_restore(m->contact->rigid + k, m->walls);
 }
 
-PetscReal rigid_halt(Model *m, const Case *from)
+void rigid_halt(Model *m, const Case *from)
 {
-  PetscReal taken = 0;
-  for (PetscInt k = 0; k < count(m); ++k) {
-    if (!wall_stood(&m->c->walls[m->contact->rigid[k].wall], m->c, from)) continue;
-    taken += rigid_kinetic(m->contact->rigid + k);
-    rigid_stop(m->contact->rigid + k);
-  }
-  return taken;
+  for (PetscInt k = 0; k < count(m); ++k)
+    if (wall_stood(&m->c->walls[m->contact->rigid[k].wall], m->c, from)) rigid_stop(m->contact->rigid + k);
+}
+
+PetscReal rigid_motion_before(const Model *m, const Case *from)
+{
+  PetscReal sum = 0;
+  for (PetscInt k = 0; k < count(m) && !case_is_static(&from->analysis); ++k)
+    for (const WallSpec *w = from->walls; w < from->walls + from->n_walls; ++w)
+      if (!strcmp(w->name, m->c->walls[m->contact->rigid[k].wall].name)) sum += rigid_kinetic(m->contact->rigid + k);
+  return sum;
 }
 
 PetscReal rigid_fastest(const Model *m)

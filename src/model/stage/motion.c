@@ -12,7 +12,7 @@ static PetscBool begins_anew(const Model *m, const Case *from)
   return (PetscBool)(stands_still(m) || case_is_static(&from->analysis));
 }
 
-PetscErrorCode ResetMotion(Model *m, const Case *from, PetscBool next, PetscReal *taken)
+PetscErrorCode ResetMotion(Model *m, const Case *from, PetscBool next)
 {
   const PetscBool stands = stands_still(m), anew = !next || (m->c->spec && m->c->spec->reset.displacement);
   NodalFields *n = m->nodes;
@@ -23,7 +23,7 @@ PetscErrorCode ResetMotion(Model *m, const Case *from, PetscBool next, PetscReal
   if (anew) PetscCall(PetscArrayzero(m->tracers->real[POINT_U], m->tracers->n * m->dim));
   if (stands && !m->method->restores_grid) PetscCall(PetscArrayzero(n->v, dofs));
   if (stands) PetscCall(PetscArrayzero(m->points->real[POINT_V], numbers));
-  *taken = stands ? rigid_halt(m, from) : 0;
+  if (stands) rigid_halt(m, from);
   if (!begins_anew(m, from)) PetscFunctionReturn(0);
   if (m->points->components[POINT_SLOPE])
     PetscCall(PetscArrayzero(m->points->real[POINT_SLOPE], m->points->n * m->points->components[POINT_SLOPE]));

@@ -78,14 +78,16 @@ static PetscReal stored_before(const Tables *tables, PetscInt dim, char reason[2
   return sum;
 }
 
-/* What comes and goes with bodies, and with motion that ends (taken: of walls), is none of the work of the run. */
-static PetscErrorCode KeepAccount(Model *m, PetscReal before, PetscReal taken, PetscBool next)
+/* What comes and goes with bodies, and with motion that ends, is none of the work of the run. before: of points, on this
+ * rank; walls: of walls with mass. */
+static PetscErrorCode KeepAccount(Model *m, PetscReal before, PetscReal walls, PetscBool next)
 {
   PetscReal local[2] = {before, stored(m)}, sum[2];
 
   PetscFunctionBeginUser;
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
-  if (next) m->start_energy += sum[1] - sum[0] - taken;
+  sum[1] += rigid_motion(m);
+  if (next) m->start_energy += sum[1] - sum[0] - walls;
   else m->start_energy = sum[1];
   m->most_energy = PetscMax(next ? m->most_energy : 0, m->start_energy + m->external_work + m->boundary_work);
   PetscFunctionReturn(0);
@@ -98,7 +100,7 @@ static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool
   const PetscReal before = stored_before(tables, m->dim, reason);
   const PetscInt errors = diag_errors(diag);
   PetscBool home = PETSC_TRUE; /* a cloud on other ranks is cut anew */
-  PetscReal taken;
+  PetscReal walls;
 
   PetscFunctionBeginUser;
   PetscCall(ReasonShare(m->comm, reason));
@@ -112,8 +114,9 @@ static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool
   PetscCall(ReasonShare(m->comm, reason));
   if (reason[0] || diag_errors(diag) > errors) PetscFunctionReturn(0);
   if (m->method->restores_grid || m->grid->n_fields > 1) PetscCall(BodiesStand(m, from, diag));
-  PetscCall(ResetMotion(m, from, next, &taken));
-  PetscCall(KeepAccount(m, before, taken, next));
+  walls = rigid_motion_before(m, from);
+  PetscCall(ResetMotion(m, from, next));
+  PetscCall(KeepAccount(m, before, walls, next));
   PetscFunctionReturn(0);
 }
 

@@ -41,7 +41,7 @@ PetscBool material_as_stiff(const Material *a, const Material *b);
  * shape; PETSC_FALSE: there is no such state. */
 PetscBool point_swap(Points *points, PetscInt p, const Material *was, const Material *is);
 /* Collective. Velocities end where the case says so, or where they mean nothing: in statics. */
-PetscErrorCode ResetMotion(Model *model, const Case *from, PetscBool next, PetscReal *taken);
+PetscErrorCode ResetMotion(Model *model, const Case *from, PetscBool next);
 /* Collective. Accelerations of the balance where nothing moves; those that go on get the jump of gravity. */
 PetscErrorCode BeginAcceleration(Model *model, const Case *from, PetscBool next);
 /* Of values of all nodes, those of this rank's nodes that no boundary holds; the others become 0. */

@@ -189,6 +189,7 @@ void equilibrium_check(const Model *m, Diag *diag)
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
     const BodySpec *body = &c->bodies[b];
     PetscReal moves = 0;
+    if (body->absent) continue;
     for (int d = 0; d < 3; ++d) moves += PetscAbsReal(body->velocity[d]) + PetscAbsReal(body->spin[d]);
     PetscSNPrintf(path, sizeof path, "bodies[%d]", (int)b);
     if (moves > 0) diag_error(diag, path, "'%s' moves at the start: what moves is in no equilibrium", body->name);
