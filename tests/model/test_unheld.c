@@ -245,6 +245,33 @@ static PetscInt settle(const char *method, PetscInt sides)
   return found;
 }
 
+/* A pressure all round a block, or a disk, that fit no lines of the grid, in steps: it bears just that pressure, and what
+ * its surface's parts leave out of balance as they come to overlap and gape is no push. */
+static void test_pressed_round(void **state)
+{
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    const PetscReal p = 1e5, within = k ? 0.03 * p : 1e-3 * p;
+    PetscReal least[6], most[6];
+    Bench b;
+    block(&b, "mpm", CELL_QUADRILATERAL);
+    b.c.basis.kind = "gimp";
+    bench_box(&b, 0, (PetscReal[]){0.03, 0.02, 0}, (PetscReal[]){0.97, 0.47, 0});
+    if (k) b.body[0].shape = (Shape){.kind = SHAPE_BALL, .centre = {0.47, 0.24}, .radius = 0.31};
+    b.c.n_loads = 1;
+    b.load[0] = (LoadSpec){.kind = LOAD_PRESSURE, .value = {p}};
+    b.load[0].on.body = (char *)"body";
+    b.c.analysis.unheld = UNHELD_HOLD;
+    run(&b, 4, least, most);
+    PetscPrintf(PETSC_COMM_WORLD, "pressed round, %s: %.9g to %.9g, %.9g to %.9g, shear %.3g\n", k ? "disk" : "block",
+                (double)least[0], (double)most[0], (double)least[1], (double)most[1], (double)(most[3] - least[3]));
+    for (int i = 0; i < 2; ++i) {
+      CHECK_CLOSE(least[i], -p, within);
+      CHECK_CLOSE(most[i], -p, within);
+    }
+  }
+}
+
 /* A wall that only pushes counts as one that holds; what it has pushed away is told. The block's lower corner ends at
  * the wall without a force: on more ranks, whose sums change their order, round-off says now and then that it leans
  * on it still. */
@@ -259,9 +286,9 @@ static void test_leaves(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_pulled), cmocka_unit_test(test_bent),  cmocka_unit_test(test_turns),
-    cmocka_unit_test(test_held),   cmocka_unit_test(test_parts), cmocka_unit_test(test_refused),
-    cmocka_unit_test(test_leaves),
+    cmocka_unit_test(test_pulled), cmocka_unit_test(test_bent),          cmocka_unit_test(test_turns),
+    cmocka_unit_test(test_held),   cmocka_unit_test(test_parts),         cmocka_unit_test(test_refused),
+    cmocka_unit_test(test_leaves), cmocka_unit_test(test_pressed_round),
   };
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

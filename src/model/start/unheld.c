@@ -8,6 +8,8 @@
 #define LEVER 1e-6
 /* of the forces that there are: loads out of balance; more than Newton's method leaves */
 #define OUT_OF_BALANCE 1e-6
+/* likewise of pressures on a surface whose parts go with points, and come to overlap and gape by that */
+#define OPEN_SURFACE 1e-4
 /* rad: how far a step may turn a body that is let go; beyond, it may have fallen over to another balance */
 #define TURN 0.05
 /* of the largest mass of a node: what has less, than a corner in space, is a poor hold */
@@ -341,14 +343,30 @@ static void let_turn(Model *m, PetscBool free)
     if (m->unheld.turns[k]) m->nodes->fixed[m->unheld.dof[k]] = !free;
 }
 
+/* What goes along with the body, as pressures do, is none of the external forces: the sum of its sizes, on this rank. */
+static PetscErrorCode GoingAlong(const Model *m, const StepProblem *p, PetscReal *sum)
+{
+  PetscReal *force;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &force));
+  const NodalOutput acting = {.force = force};
+  PetscCall(NodalForcesAssemble(p->forces, &p->scene, &acting));
+  PetscCall(GridSumToOwners(m->grid, m->dim, force));
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) *sum += PetscAbsReal(force[i]);
+  PetscCall(PetscFree(force));
+  PetscFunctionReturn(0);
+}
+
 /* What the directions bear that are held, N, and is it too much? */
-static PetscErrorCode Borne(const Model *m, PetscReal round_off, PetscReal *borne, PetscBool *much)
+static PetscErrorCode Borne(const Model *m, const StepProblem *p, PetscReal *borne, PetscBool *much)
 {
   const NodalFields *n = m->nodes;
   const PetscInt owned = m->grid->n_owned * m->dim;
-  PetscReal pull[3], sums[2] = {0, 0};
+  PetscReal pull[3], sums[3] = {0, 0, 0};
 
   PetscFunctionBeginUser;
+  PetscCall(GoingAlong(m, p, sums + 2));
   gravity_at(m->c, raised_time(m, m->time + m->c->analysis.step), pull);
   for (PetscInt i = 0; i < owned; ++i)
     if (n->touched[i / m->dim])
@@ -356,9 +374,9 @@ static PetscErrorCode Borne(const Model *m, PetscReal round_off, PetscReal *born
         PetscAbsReal(n->force[i]) + PetscAbsReal(n->external[i]) + n->mass[i / m->dim] * PetscAbsReal(pull[i % m->dim]);
   for (PetscInt k = 0; k < m->unheld.n; ++k)
     if (m->unheld.dof[k] < owned && n->fixed[m->unheld.dof[k]]) sums[0] += PetscAbsReal(n->force[m->unheld.dof[k]]);
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, m->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, m->comm));
   *borne = sums[0];
-  *much = sums[0] > OUT_OF_BALANCE * sums[1] + round_off;
+  *much = sums[0] > OUT_OF_BALANCE * sums[1] + OPEN_SURFACE * sums[2] + p->round_off;
   PetscFunctionReturn(0);
 }
 
@@ -382,7 +400,7 @@ static PetscErrorCode LetTurn(Model *m, StepProblem *p, const LinearProblem *lin
   report->newton.iterations += first.iterations;
   report->newton.linear_iterations += first.linear_iterations;
   if (!report->newton.converged || moved > TURN * m->unheld.size) PetscFunctionReturn(0);
-  PetscCall(Borne(m, p->round_off, borne, much));
+  PetscCall(Borne(m, p, borne, much));
   PetscFunctionReturn(0);
 }
 
@@ -393,7 +411,7 @@ PetscErrorCode UnheldJudge(Model *m, StepProblem *p, const LinearProblem *linear
 
   PetscFunctionBeginUser;
   if (m->c->analysis.unheld != UNHELD_HOLD) PetscFunctionReturn(0);
-  PetscCall(Borne(m, p->round_off, &borne, &much));
+  PetscCall(Borne(m, p, &borne, &much));
   if (much && m->unheld.turning) PetscCall(LetTurn(m, p, linear, report, &borne, &much));
   if (!much || report->newton.interrupted) PetscFunctionReturn(0);
   let_turn(m, PETSC_FALSE);
