@@ -281,7 +281,7 @@ static PetscErrorCode CheckGroup(Model *m, Group *g, Diag *diag)
   for (PetscInt f = 0; f < g->n_free; ++f) most = PetscMax(most, PetscAbsReal(sums[f]));
   snprintf(path, sizeof path, "bodies[%d]", (int)g->body);
   name_free(m, g, text);
-  if (most > OUT_OF_BALANCE * sums[RIGID]) {
+  if (most > (case_load_follows(m->c) ? OPEN_SURFACE : OUT_OF_BALANCE) * sums[RIGID]) {
     diag_error(diag, path, "nothing holds '%s' %s, and loads push it that way: %.3g of %.3g N are out of balance",
                m->c->bodies[g->body].name, text, (double)most, (double)sums[RIGID]);
     diag_hint(diag, "analysis.unheld: hold is for loads in balance; fix a boundary, or analysis: {type: dynamic}");
