@@ -33,6 +33,20 @@ expect "turns in space" 0 "$talus" run turns.yaml --out turns --force --quiet --
   --set "$(sed -n 2p space.txt)" --set "$(sed -n 3p space.txt)"
 free
 
+# Two bodies that meet, in a box that turns, whatever lies between them; a core in a frame whose nodes turn.
+for way in "fem bonded" "mpm bonded" "fem frictionless"; do
+  set -- $way
+  expect "two turn, $way" 0 "$talus" run turns.yaml --out turns --force --quiet --set method=$1 --set analysis.steps=18 --set walls[0].contact=frictionless \
+    --set 'bodies=[{name: b, shape: {box: {min: [-0.5, -0.5], max: [0.5, 0]}}, material: m}, {name: c, shape: {box: {min: [-0.5, 0], max: [0.5, 0.5]}}, material: m}]' \
+    --set "interfaces=[{name: i, between: [b, c], contact: $2}]"
+  free
+done
+expect "a core in a frame" 0 "$talus" run turns.yaml --out turns --force --quiet --set method=fem --set walls=[] --set analysis.end=0.1 \
+  --set 'bodies=[{name: b, shape: {box: {min: [-0.5, -0.5], max: [0.5, 0.5]}}, material: m}, {name: c, shape: {difference: [{box: {min: [-1, -1], max: [1, 1]}}, {box: {min: [-0.5, -0.5], max: [0.5, 0.5]}}]}, material: m}]' \
+  --set 'boundary=[{on: {shape: {difference: [{box: {min: [-2, -2], max: [2, 2]}}, {circle: {centre: [0, 0], radius: 0.9}}]}}, rotation: {centre: [0, 0], rate: 1.5707963267948966}}]' \
+  --set 'interfaces=[{name: i, between: [b, c], contact: bonded}]' --set 'measures.volume={formula: 1 + sxx * 0}'
+free
+
 # A block that bears its stress, under a lid that goes along it from the start on, by 0.01 in all: shear G 0.01 at the
 # end, a share of it in each step, and none before.
 cat >sheared.yaml <<'END'

@@ -34,6 +34,7 @@ PetscErrorCode ContactDestroy(Contact **contact)
   PetscCall(PetscFree(s->node));
   PetscCall(PetscFree(s->N));
   PetscCall(PetscFree(s->lead));
+  PetscCall(PetscFree(s->turn));
   PetscCall(PetscFree(s->slot));
   PetscCall(PetscFree(s->divisor));
   PetscCall(PetscFree(s->wall));
@@ -119,14 +120,29 @@ static PetscErrorCode Create(const NodalScene *scene, Diag *diag, void **data)
   PetscFunctionReturn(0);
 }
 
+/* The normal of contact at the end of the step: that of the wall, or of the surface of a body as it has turned. */
+static void normal_at_end(const Contact *s, const ContactPoint *c, const PetscReal *du, PetscReal n[3])
+{
+  PetscReal turned = 0;
+  for (int d = 0; d < 3; ++d) n[d] = c->normal[d];
+  if (c->wall < s->n_walls) return;
+  for (PetscInt e = c->first; e < c->first + c->own; ++e)
+    for (PetscInt d = 0; d < s->dim; ++d) turned += s->turn[e] * c->normal[d] * du[s->node[e] * s->dim + d];
+  const PetscReal size = PetscSqrtReal(1 + turned * turned);
+  n[0] = (c->normal[0] + turned * c->normal[1]) / size;
+  n[1] = (c->normal[1] - turned * c->normal[0]) / size;
+}
+
 /* Distance of the material point from its surface at the end of the step, along the normal there: that of where both
  * have gone, so that the next step starts with the gap that this one ends with. */
 static PetscReal reach_at_end(const Contact *s, const ContactPoint *c, const NodalScene *scene)
 {
   const PetscReal first = scene->points->real[POINT_REACH][c->owner];
-  PetscReal reach = c->ahead;
+  PetscReal n[3], reach = c->ahead;
+  normal_at_end(s, c, scene->du, n);
+  if (c->wall >= s->n_walls) reach *= n[0] * c->normal[0] + n[1] * c->normal[1];
   for (PetscInt e = c->first; e < c->first + c->own; ++e)
-    for (PetscInt d = 0; d < s->dim; ++d) reach -= c->normal[d] * s->lead[e] * scene->du[s->node[e] * s->dim + d];
+    for (PetscInt d = 0; d < s->dim; ++d) reach -= n[d] * s->lead[e] * scene->du[s->node[e] * s->dim + d];
   return PetscMax(THINNEST * first, PetscMin(contact_farthest(scene->points, c->owner), reach));
 }
 

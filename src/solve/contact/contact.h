@@ -92,6 +92,7 @@ typedef struct Contact {
   PetscInt n_nodes, capacity_nodes, *node;
   PetscReal *N;
   PetscReal *lead; /* what N is at the surface beyond what it is at the material point */
+  PetscReal *turn; /* of bodies in the plane: how N changes along the surface, (-n_y, n_x), 1/m */
   PetscInt n_slots, capacity_slots, *slot;
   PetscReal worst;  /* gap or slip when multipliers were last looked at, m */
   PetscReal near;   /* m: what is farther away cannot be reached in a step */

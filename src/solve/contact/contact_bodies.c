@@ -61,6 +61,7 @@ static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, co
     PetscCheck(s->node[e] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a body meets another one on an unknown node");
     s->N[e] = sign * (p->N[I] + change);
     s->lead[e] = sign * change;
+    s->turn[e] = p->dN[I * s->dim + 1] * c->normal[0] - p->dN[I * s->dim] * c->normal[1];
   }
   PetscFunctionReturn(0);
 }
