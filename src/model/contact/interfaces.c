@@ -5,6 +5,7 @@
 /* Of its reach: a part of a body that reaches deeper into another body at the start is a mistake; what
  * reaches less was made to fit. */
 #define THROUGH 0.1
+#define MADE_TO_FIT 0.35 /* of the size of a point: a gap within it is one between polygons */
 
 static void check_method(const Model *m, Diag *diag)
 {
@@ -73,16 +74,26 @@ static void check_twice(const Case *c, Diag *diag)
   }
 }
 
-/* Surfaces that were made to fit do so but for their polygons: their parts of the first body are made
- * thinner. *worst: the deepest of this rank that was not. */
-static void fit(Model *m, const Surface *first, const Surface *second, LostPoint *worst, PetscReal *deepest)
+/* Point p of interface k ends where the other body begins. */
+static void reach_over(Model *m, PetscInt k, PetscInt p, const SurfacePair *pair)
 {
+  const PetscInt partner = m->c->n_walls + k;
+  point_real(m->points, POINT_CONTACT, p)[partner * CONTACT_KEPT(m->dim) + 1] = pair->gap;
+  contact_let_reach(m->points, p, pair->normal, pair->gap);
+}
+
+/* Surfaces that were made to fit do so but for their polygons: their parts of the first body are made
+ * thinner, and where the bodies are bonded thicker, too, or only some of them would be held. *worst: the deepest of this rank that was not. */
+static void fit(Model *m, PetscInt k, const Surface *first, const Surface *second, LostPoint *worst, PetscReal *deepest)
+{
+  const PetscBool bonded = (PetscBool)(m->c->interfaces[k].contact == CONTACT_BONDED);
   SurfacePair pair;
   PetscMPIInt rank;
   MPI_Comm_rank(m->comm, &rank);
   for (const SurfacePoint *p = first->point; p < first->point + first->n; ++p) {
     if (p->rank != rank || !surface_meet(first, p, second, m->grid->smallest, &pair)) continue;
     const PetscReal reach = contact_reach_of(m->points, p->owner, pair.normal), gap = pair.gap - reach;
+    if (gap > 0 && gap < MADE_TO_FIT * p->size && bonded) reach_over(m, k, p->owner, &pair);
     if (gap >= 0) continue;
     if (gap > -THROUGH * reach) contact_take_back(m->points, p->owner, pair.normal, pair.gap);
     else if (gap < *deepest) {
@@ -105,7 +116,7 @@ static PetscErrorCode FitInterface(Model *m, const SurfaceInput *in, const Petsc
   PetscFunctionBeginUser;
   PetscCall(SurfaceGather(in, a, bounds + 6 * b, within, &first));
   PetscCall(SurfaceGather(in, b, bounds + 6 * a, within, &second));
-  fit(m, &first, &second, &worst, &deepest);
+  fit(m, k, &first, &second, &worst, &deepest);
   PetscCall(SurfaceClear(&first));
   PetscCall(SurfaceClear(&second));
   PetscCall(MPIU_Allreduce(&deepest, &all, 1, MPIU_REAL, MPIU_MIN, m->comm));

@@ -63,11 +63,14 @@ static PetscReal stiffness_of(const ContactPoint *c, PetscReal h, PetscReal iner
   return other > 0 ? k * other / (k + other) : k;
 }
 
-/* A chord of what turns leads inwards, where forces would do work that no torque does. */
+/* A chord of what turns leads inwards, where forces of the end would do work that no torque does; the mean of those of
+ * both ends, which statics have, does what the torque does along the chord. */
 static void sweep(const Contact *s, ContactPoint *c, PetscReal t, PetscReal dt)
 {
   PetscReal x[3];
   wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
+  for (int d = 0; d < 3; ++d) c->passes[d] = c->swept[d];
+  if (!s->share.moves) return;
   for (int d = 0; d < 3; ++d) x[d] = c->x[d] - c->swept[d] / 2;
   wall_motion(s->walls, c->wall, t, t + dt, x, c->passes);
 }
