@@ -198,13 +198,14 @@ static void stiffen(ContactPoint *c, PetscReal left)
 }
 
 /* How far its body, or its wall, takes a contact point in the step, m. In dynamics what rests with a gap would be
- * shaken, and what flies has its force of its inertia: there walls count that are moved, and what is bonded. */
+ * shaken, and what flies has its force of its inertia: there walls count that are moved, and what is bonded, if the scheme
+ * is the midpoint rule's. Newmark's remembers what small gaps take, and shook a block that rests on a bonded body. */
 static PetscReal travel_of(const Contact *s, const ContactPoint *c, const NodalScene *scene)
 {
   const PetscBool driven = c->wall < s->n_walls && !contact_rigid(s, c);
   PetscReal own[3] = {0}, square[2] = {0};
   if (c->state == CONTACT_OPEN) return 0;
-  if (s->share.moves && c->law.kind != CONTACT_BONDED)
+  if (s->share.moves && (c->law.kind != CONTACT_BONDED || s->share.inertia))
     return driven ? PetscSqrtReal(PetscSqr(c->swept[0]) + PetscSqr(c->swept[1]) + PetscSqr(c->swept[2])) : 0;
   for (PetscInt e = c->first; e < c->first + c->own; ++e)
     for (PetscInt d = 0; d < s->dim; ++d) own[d] += scene->whole * s->N[e] * scene->du[s->node[e] * s->dim + d];
