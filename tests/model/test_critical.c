@@ -1,5 +1,5 @@
-/* The critical substep of explicit dynamics: 2 over the highest frequency of a cell with a point in its middle, which is
- * found here from shape functions and Hooke's law by vector iteration. */
+/* The critical substep of explicit dynamics: 2 over the highest frequency of a cell with a point in its middle, which
+ * is found here from shape functions and Hooke's law by vector iteration. */
 #include "case_builder.h"
 #include "model/explicit/critical.h"
 

@@ -245,8 +245,8 @@ static PetscInt settle(const char *method, PetscInt sides)
   return found;
 }
 
-/* A pressure all round a block, or a disk, that fit no lines of the grid, in steps: it bears just that pressure, and what
- * its surface's parts leave out of balance as they come to overlap and gape is no push. */
+/* A pressure all round a block, or a disk, that fit no lines of the grid, in steps: it bears just that pressure, and
+ * what its surface's parts leave out of balance as they come to overlap and gape is no push. */
 static void test_pressed_round(void **state)
 {
   (void)state;

@@ -82,8 +82,9 @@ static void reach_over(Model *m, PetscInt k, PetscInt p, const SurfacePair *pair
   contact_let_reach(m->points, p, pair->normal, pair->gap);
 }
 
-/* Surfaces that were made to fit do so but for their polygons: their parts of the first body are made
- * thinner, and where the bodies are bonded thicker, too, or only some of them would be held. *worst: the deepest of this rank that was not. */
+/* Surfaces that were made to fit do so but for their polygons: their parts of the first body are made thinner, and
+ * where the bodies are bonded thicker, too, or only some of them would be held. *worst: the deepest of this rank that
+ * was not. */
 static void fit(Model *m, PetscInt k, const Surface *first, const Surface *second, LostPoint *worst, PetscReal *deepest)
 {
   const PetscBool bonded = (PetscBool)(m->c->interfaces[k].contact == CONTACT_BONDED);

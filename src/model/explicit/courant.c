@@ -60,8 +60,8 @@ static PetscReal stiffest(const Material *material, int axes, const PetscReal ta
   return most;
 }
 
-/* Points off the middle of their cells bring higher frequencies, at nodes that they hardly reach. `musl` bears them; `usl`
- * does not, nor do grains beside springs of walls, nor what is near an axis: there the trace is kept. */
+/* Points off the middle of their cells bring higher frequencies, at nodes that they hardly reach. `musl` bears them;
+ * `usl` does not, nor do grains beside springs of walls, nor what is near an axis: there the trace is kept. */
 static PetscBool trusts_rows(const Model *m, const Sides *sides)
 {
   return (PetscBool)(sides->box && m->c->analysis.update == EXPLICIT_MUSL && !m->c->kinematics->hoop && !m->contact);

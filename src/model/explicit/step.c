@@ -4,8 +4,8 @@
  * Who knows the method reads Substep; the rest divides the run's step and keeps its accounts. */
 #include "model/explicit/explicit.h"
 
-/* In the time in which a wave crosses a cell (docs/theory.md, "Gradients that points carry"): who follows faster than the unseen fades
- * becomes unstable where a node is hardly reached. */
+/* In the time in which a wave crosses a cell (docs/theory.md, "Gradients that points carry"): who follows faster than
+ * the unseen fades becomes unstable where a node is hardly reached. */
 #define UNSEEN 0.02
 #define FOLLOW 0.01
 

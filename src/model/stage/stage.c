@@ -78,8 +78,8 @@ static PetscReal stored_before(const Tables *tables, PetscInt dim, char reason[2
   return sum;
 }
 
-/* What comes and goes with bodies, and with motion that ends, is none of the work of the run. before: of points, on this
- * rank; walls: of walls with mass. */
+/* What comes and goes with bodies, and with motion that ends, is none of the work of the run. before: of points, on
+ * this rank; walls: of walls with mass. */
 static PetscErrorCode KeepAccount(Model *m, PetscReal before, PetscReal walls, PetscBool next)
 {
   PetscReal local[2] = {before, stored(m)}, sum[2];

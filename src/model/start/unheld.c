@@ -343,7 +343,7 @@ static void let_turn(Model *m, PetscBool free)
     if (m->unheld.turns[k]) m->nodes->fixed[m->unheld.dof[k]] = !free;
 }
 
-/* What goes along with the body, as pressures do, is none of the external forces: the sum of its sizes, on this rank. */
+/* What goes along with the body, as pressures do, is none of the external forces: the sum of its sizes on this rank. */
 static PetscErrorCode GoingAlong(const Model *m, const StepProblem *p, PetscReal *sum)
 {
   PetscReal *force;

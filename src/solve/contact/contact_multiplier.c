@@ -198,8 +198,9 @@ static void stiffen(ContactPoint *c, PetscReal left)
 }
 
 /* How far its body, or its wall, takes a contact point in the step, m. In dynamics what rests with a gap would be
- * shaken, and what flies has its force of its inertia: there walls count that are moved, and what is bonded, if the scheme
- * is the midpoint rule's. Newmark's remembers what small gaps take, and shook a block that rests on a bonded body. */
+ * shaken, and what flies has its force of its inertia: there walls count that are moved, and what is bonded, if the
+ * scheme is the midpoint rule's. Newmark's remembers what small gaps take, and shook a block that rests on a bonded
+ * body. */
 static PetscReal travel_of(const Contact *s, const ContactPoint *c, const NodalScene *scene)
 {
   const PetscBool driven = c->wall < s->n_walls && !contact_rigid(s, c);
