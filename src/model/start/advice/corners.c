@@ -66,7 +66,7 @@ PetscErrorCode AdviseCorners(const Model *m, Diag *diag)
     PetscCall(PetscSNPrintf(path, sizeof path, "walls[%d]", (int)k));
     diag_warning(diag, path,
                  "a body fills a corner of wall '%s', at %s m: there it meets one of the two sides only, and stresses "
-                 "within a cell or two are up to a third too small",
+                 "within a cell or two are too small by a third and more",
                  m->c->walls[k].name, text_position(m->dim, x, where));
     diag_hint(diag, "sides that are walls of their own (half-spaces) both hold it");
   }
