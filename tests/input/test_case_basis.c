@@ -246,10 +246,18 @@ static void Idle(void **state)
     {STILL(", courant: 0.5") BEAM("") "newton: {residual: 1e-3}\n", "analysis.type=explicit", {NULL}},
     {QUICK("") BEAM("") "newton: {residual: 1e-3}\n", "newton.increment=1e-3", {"newton.residual", "newton.increment"}},
     /* a stage that says its type says all of its analysis */
-    {STILL("") BEAM(", velocity: [1, 0]") STABLE
-     "stages: [{name: a}, {name: b, analysis: {type: dynamic, end: 1, step: 0.1}}]\n",
+    {STILL("") BEAM("") STABLE "stages: [{name: a}, {name: b, analysis: {type: dynamic, end: 1, step: 0.1}}]\n",
      NULL,
      {"stabilisation.stiffness", "stabilisation.inertia"}},
+    /* a body moves as it is told when it comes: in statics it does not, and has nothing left for a later stage */
+    {STILL("")
+       BEAM(", velocity: [1, 0]") "stages: [{name: a}, {name: b, analysis: {type: dynamic, end: 1, step: 0.1}}]\n",
+     NULL,
+     {"bodies[0].velocity"}},
+    {STILL("") BEAM(", velocity: [1, 0], absent: true") "stages: [{name: a}, {name: b, analysis: {type: dynamic, end: "
+                                                        "1, step: 0.1}, bodies: [{name: beam, absent: false}]}]\n",
+     NULL,
+     {NULL}},
     {STILL(", damping: 2") BEAM(
        "") "stages: [{name: a}, {name: b, analysis: {type: dynamic, end: 1, step: 0.1, damping: 2, courant: 0.5}}]\n",
      NULL,
