@@ -13,6 +13,8 @@
 typedef PetscBool Works(const Case *c, PetscInt i);
 
 static PetscBool has_inertia(const Case *c, PetscInt i) { return (void)i, !case_is_static(&c->analysis); }
+/* Of a body: looked at in the stage with which it comes alone, since it has nothing left of it later. */
+static PetscBool starts(const Case *c, PetscInt i) { return has_inertia(c, i); }
 static PetscBool is_explicit(const Case *c, PetscInt i) { return (void)i, c->analysis.type == ANALYSIS_EXPLICIT; }
 static PetscBool iterates(const Case *c, PetscInt i) { return !is_explicit(c, i); }
 static PetscBool is_implicit(const Case *c, PetscInt i) { return has_inertia(c, i) && iterates(c, i); }
@@ -120,8 +122,8 @@ static const IdleKey keys[] = {
    "`initial: {equilibrium: direct}` looks for an equilibrium first"},
   {"boundary", "amplitude", moves, "`fix` holds at any time, whatever the factor",
    "`displacement`, `velocity` and `rotation` have an amplitude; stages let go (`absent: true`)"},
-  {"bodies", "velocity", has_inertia, NO_INERTIA},
-  {"bodies", "spin", has_inertia, NO_INERTIA},
+  {"bodies", "velocity", starts, NO_INERTIA},
+  {"bodies", "spin", starts, NO_INERTIA},
 };
 
 /* What chooses how a case is computed: a key that was there before somebody (--set, a series, a sweep) chose anew was
@@ -231,12 +233,12 @@ static const YamlNode *find(const Search *s, const IdleKey *key, PetscInt k, Pet
   return list && list->kind == YAML_SEQUENCE && i < list->n ? node_at(list->child[i], key->key) : NULL;
 }
 
-/* A body moves as it is told when it comes, if that stage has inertia. */
-static PetscBool comes_moving(const Search *s, PetscInt k, PetscInt i)
+/* In the stage with which body i comes, k or a later one. */
+static PetscBool starts_moving(const Search *s, PetscInt k, PetscInt i)
 {
   for (PetscInt j = k; j < case_stages(s->c); ++j) {
     const Case *c = case_stage(s->c, j);
-    if (i < c->n_bodies && !c->bodies[i].absent) return has_inertia(c, i);
+    if (i < c->n_bodies && !c->bodies[i].absent) return starts(c, i);
   }
   return PETSC_TRUE;
 }
@@ -244,7 +246,7 @@ static PetscBool comes_moving(const Search *s, PetscInt k, PetscInt i)
 /* Has it an effect in the stage, or in a later one that still has it? */
 static PetscBool works_from(const Search *s, const IdleKey *key, PetscInt k, PetscInt i)
 {
-  if (key->list && !strcmp(key->list, "bodies")) return comes_moving(s, k, i);
+  if (key->works == starts) return starts_moving(s, k, i);
   for (PetscInt j = k; j < case_stages(s->c); ++j) {
     const YamlNode *node = find(s, key, j, i);
     if (node && node->stage == k && key->works(case_stage(s->c, j), i)) return PETSC_TRUE;

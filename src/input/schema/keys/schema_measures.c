@@ -188,7 +188,10 @@ static SchemaEntry measure_entry(PetscInt i)
   };
   static SchemaEntry made[MOST_KEYS]; /* once: whoever reads a table asks for each many times */
   static PetscInt n;
-  for (; !n || made[n - 1].key; ++n) made[n] = n < n_measures() ? entry_of(measures[n]) : beside[n - n_measures()];
+  for (const PetscInt first = n_measures(); !n || made[n - 1].key; ++n) {
+    PetscCheckAbort(n < MOST_KEYS, PETSC_COMM_SELF, PETSC_ERR_PLIB, "more keys of a measure than MOST_KEYS");
+    made[n] = n < first ? entry_of(measures[n]) : beside[n - first];
+  }
   return made[i];
 }
 

@@ -4,9 +4,9 @@
 #include "model/model_private.h"
 #include "solve/contact/contact.h"
 
-#define TURNS 0.7 /* cosine between normals: sides that meet at more than 45 degrees */
-#define STEP 0.5  /* of a point's reach: as far beside it the other side must be the nearer one */
-#define TOUCHES 1.05
+#define TURNS 0.7    /* cosine between normals: sides that meet at more than 45 degrees */
+#define STEP 0.5     /* of a point's reach: as far beside it the other side must be the nearer one */
+#define TOUCHES 1.05 /* of its reach: so near to a side it ends there */
 
 /* Does the surface of p end at another side, which is what a place beside it along the first side is nearest to? */
 static PetscBool meets_side(const Model *m, PetscInt k, PetscInt p, const WallPlace *place, const PetscReal along[3])
@@ -44,25 +44,33 @@ static PetscBool is_in_corner(const Model *m, PetscInt k, PetscInt p)
   return PETSC_FALSE;
 }
 
+/* Collective. The first elastic point in a corner of wall k, on the first rank that has one. */
+static PetscErrorCode FindInCorner(const Model *m, PetscInt k, PetscBool *found, PetscReal x[3])
+{
+  PetscMPIInt rank, owner;
+  PetscInt p = 0;
+
+  PetscFunctionBeginUser;
+  while (p < m->points->n && (m->materials[m->points->material[p]].law->yields || !is_in_corner(m, k, p))) ++p;
+  PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
+  owner = p < m->points->n ? rank : PETSC_MPI_INT_MAX;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &owner, 1, MPI_INT, MPI_MIN, m->comm));
+  *found = (PetscBool)(owner < PETSC_MPI_INT_MAX);
+  if (rank == owner) point_place(m->points, p, x);
+  if (*found) PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, owner, m->comm));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode AdviseCorners(const Model *m, Diag *diag)
 {
   char path[64], where[80];
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
-    PetscInt first = -1, least;
     PetscReal x[3] = {0, 0, 0};
-    PetscMPIInt rank, owner;
-    if (m->c->walls[k].absent) continue;
-    for (PetscInt p = 0; p < m->points->n && first < 0; ++p)
-      if (!m->materials[m->points->material[p]].law->yields && is_in_corner(m, k, p)) first = p;
-    MPI_Comm_rank(m->comm, &rank);
-    owner = first < 0 ? PETSC_MPI_INT_MAX : rank;
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &owner, 1, MPI_INT, MPI_MIN, m->comm));
-    least = owner;
-    if (least == PETSC_MPI_INT_MAX) continue;
-    for (PetscInt d = 0; d < m->dim && rank == owner; ++d) x[d] = point_real(m->points, POINT_X, first)[d];
-    PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, owner, m->comm));
+    PetscBool found = PETSC_FALSE;
+    if (!m->c->walls[k].absent) PetscCall(FindInCorner(m, k, &found, x));
+    if (!found) continue;
     PetscCall(PetscSNPrintf(path, sizeof path, "walls[%d]", (int)k));
     diag_warning(diag, path,
                  "a body fills a corner of wall '%s', at %s m: there it meets one of the two sides only, and stresses "

@@ -246,14 +246,15 @@ static PetscBool clear_front(const Part *part, const SurfacePoint *q, const Pets
   return (PetscBool)(clear->n < part->n);
 }
 
-/* Both ways that n can be known: across the hulls of both parts; */
+/* A way to the other body, and what of that counts. */
 typedef struct {
   PetscReal n[2];
-  Part theirs; /* what of the other body counts */
+  Part theirs;
 } Way;
 
-/* and, where something is before the side that p meets, which a body does that stands round a corner of the other one
- * and has two sides there, across what is behind the side as p and its neighbours and those of q see it. */
+/* A body that stands round a corner of the other one has two sides there, and its hull has neither. Where something is
+ * before the surface across `whole`, the way is across what is behind the side that p meets, as it and its neighbours
+ * and those of q see it; way->n comes with that between the two points. PETSC_FALSE: nothing is before it. */
 static PetscBool take_side(const SurfacePoint *p, const Part *mine, const SurfacePoint *q, const Part *theirs,
                            const PetscReal whole[2], Way *way)
 {
@@ -264,10 +265,12 @@ static PetscBool take_side(const SurfacePoint *p, const Part *mine, const Surfac
   if (!clear_front(mine, p, back, &near) && !turns) return PETSC_FALSE;
   beside(mine, p, &near);
   beside(theirs, q, &far);
+  if (!near.n || !far.n) return PETSC_FALSE; /* so many points that some were left out */
   face_each_other(&near, &far, deepest, way->n);
   for (int i = 0; i < 2; ++i) back[i] = -way->n[i];
   (void)clear_front(theirs, q, way->n, &way->theirs);
   (void)clear_front(mine, p, back, &near);
+  if (!near.n || !way->theirs.n) return PETSC_FALSE;
   face_each_other(&near, &way->theirs, deepest, way->n);
   return PETSC_TRUE;
 }
