@@ -287,8 +287,6 @@ void advise_passing(const Model *model, Diag *diag);
 void advise_late(const Model *model, Diag *diag);
 /* cells.c. Collective. The same of cells whose points do not hold a uniform stress. */
 PetscErrorCode AdviseCells(const Model *model, Diag *diag);
-/* corners.c. Collective. The same of what fills a corner of a wall. */
-PetscErrorCode AdviseCorners(const Model *model, Diag *diag);
 /* units.c. Collective. Warn of numbers that are no matter's in kg, m, s and Pa. */
 PetscErrorCode AdviseUnits(const Model *model, Diag *diag);
 /* Collective. The same of a drum that is not closed: start/drum.c. */

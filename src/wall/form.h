@@ -28,6 +28,9 @@ PetscErrorCode FormDestroy(Form **form);
 /* facets_near for any shape. */
 Nearness form_near(const Form *form, const PetscReal x[3], int flip, PetscReal high, WallPlace *place);
 
+/* All places of the shape that x may see within `high`, for wall_sides: hidden ones among them (sides.c). */
+void form_sides(const Form *form, const PetscReal x[3], int flip, PetscReal high, WallSides *sides);
+
 /* --- solids.c: gap, normal and curvature of shapes with a formula --- */
 void box_place(const Form *form, const PetscReal x[3], WallPlace *place);
 void ball_place(const Form *form, const PetscReal x[3], WallPlace *place);
@@ -35,6 +38,7 @@ void half_space_place(const Form *form, const PetscReal x[3], WallPlace *place);
 Nearness arc_place(const Form *form, const PetscReal x[3], WallPlace *place);
 /* A section (radius, height) turned about an axis. */
 Nearness revolved_near(const Form *form, const PetscReal x[3], int flip, PetscReal high, WallPlace *place);
+void revolved_sides(const Form *form, const PetscReal x[3], int flip, PetscReal high, WallSides *sides);
 
 /* --- surface/surface.c --- */
 PetscErrorCode SurfaceRead(const Shape *shape, const char *path, Diag *diag, Facets **facets);

@@ -120,27 +120,46 @@ static void revolve(const Form *f, const PetscReal radial_unit[3], PetscReal rad
                                     hoop * ((i == j) - e[i] * e[j] - a[i] * a[j]);
 }
 
-Nearness revolved_near(const Form *f, const PetscReal x[3], int flip, PetscReal high, WallPlace *place)
+/* Where x is in the section: radius and height, and which way r leads away from the axis; on it as good as any. */
+static void into_section(const Form *f, const PetscReal x[3], PetscReal at[3], PetscReal r[3])
 {
   const PetscReal *a = f->direction;
-  PetscReal r[3], height = 0, square = 0;
-  WallPlace section;
+  PetscReal height = 0, square = 0;
   for (int d = 0; d < 3; ++d) height += (x[d] - f->base[d]) * a[d];
   for (int d = 0; d < 3; ++d) {
     r[d] = x[d] - f->base[d] - height * a[d];
     square += r[d] * r[d];
   }
-  const PetscReal radius = PetscSqrtReal(square), at[3] = {radius, height, 0};
-  const Nearness near = facets_near(f->facets, at, flip, f->thin, high, &section);
-  if (near == NEAR_NOT) return near;
-  if (radius > 0)
-    for (int d = 0; d < 3; ++d) r[d] /= radius;
-  else { /* any direction across the axis */
-    const int least = fabs(a[0]) <= fabs(a[1]) && fabs(a[0]) <= fabs(a[2]) ? 0 : fabs(a[1]) <= fabs(a[2]) ? 1 : 2;
-    for (int d = 0; d < 3; ++d) r[d] = (d == least) - a[least] * a[d];
-    const PetscReal length = PetscSqrtReal(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
-    for (int d = 0; d < 3; ++d) r[d] /= length;
+  at[0] = PetscSqrtReal(square), at[1] = height, at[2] = 0;
+  if (at[0] > 0) {
+    for (int d = 0; d < 3; ++d) r[d] /= at[0];
+    return;
   }
-  revolve(f, r, radius, &section, place);
+  const int least = fabs(a[0]) <= fabs(a[1]) && fabs(a[0]) <= fabs(a[2]) ? 0 : fabs(a[1]) <= fabs(a[2]) ? 1 : 2;
+  for (int d = 0; d < 3; ++d) r[d] = (d == least) - a[least] * a[d];
+  const PetscReal length = PetscSqrtReal(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
+  for (int d = 0; d < 3; ++d) r[d] /= length;
+}
+
+Nearness revolved_near(const Form *f, const PetscReal x[3], int flip, PetscReal high, WallPlace *place)
+{
+  PetscReal at[3], r[3];
+  WallPlace section;
+  into_section(f, x, at, r);
+  const Nearness near = facets_near(f->facets, at, flip, f->thin, high, &section);
+  if (near != NEAR_NOT) revolve(f, r, at[0], &section, place);
   return near;
+}
+
+void revolved_sides(const Form *f, const PetscReal x[3], int flip, PetscReal high, WallSides *sides)
+{
+  PetscReal at[3], r[3];
+  WallSides section = {.n = 0};
+  into_section(f, x, at, r);
+  facets_sides(f->facets, at, flip, high, &section);
+  for (PetscInt i = 0; i < section.n; ++i) {
+    WallPlace place;
+    revolve(f, r, at[0], &section.place[i], &place);
+    sides_add(sides, &place);
+  }
 }

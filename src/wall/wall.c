@@ -19,6 +19,7 @@ PetscErrorCode WallsCreate(const Case *c, Diag *diag, Walls **walls)
     PetscCall(FormCreate(&wall->spec->shape, (*walls)->dim, c->kinematics->hoop, path, diag, &wall->form));
     if (wall->form) wall_check(c, wall->spec, wall->form, path, diag);
     wall->asked = NAN;
+    wall->corners = wall_has_corners(wall->spec);
     wall->frame = (Frame){.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   }
   PetscFunctionReturn(0);
@@ -71,9 +72,9 @@ static void frame_of(const Walls *walls, PetscInt k, PetscReal t, Frame *frame)
   else frame_at(walls->c, walls->wall[k].spec, t, frame);
 }
 
-/* x in the frame of the wall at time t. */
-static void to_origin(const Walls *walls, Wall *wall, PetscReal t, const PetscReal *x, PetscReal X[3])
+void wall_origin(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x, PetscReal X[3])
 {
+  Wall *wall = walls->wall + k;
   PetscReal at[3] = {x[0], x[1], walls->dim == 3 ? x[2] : 0};
   if (!moves(wall)) {
     for (int d = 0; d < 3; ++d) X[d] = at[d];
@@ -84,12 +85,23 @@ static void to_origin(const Walls *walls, Wall *wall, PetscReal t, const PetscRe
   frame_origin(&wall->frame, at, X);
 }
 
-static void from_origin(const Wall *wall, WallPlace *place)
+void wall_turn(const Wall *wall, WallPlace *place)
 {
   const WallPlace own = *place;
   if (!moves(wall)) return;
   frame_turn(&wall->frame, own.normal, place->normal);
   frame_turn_tensor(&wall->frame, own.curvature, place->curvature);
+}
+
+void wall_turn_back(const Wall *wall, WallPlace *place)
+{
+  Frame back = {.T = {0}};
+  const WallPlace own = *place;
+  if (!moves(wall)) return;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) back.R[3 * i + j] = wall->frame.R[3 * j + i];
+  frame_turn(&back, own.normal, place->normal);
+  frame_turn_tensor(&back, own.curvature, place->curvature);
 }
 
 /* A surface without an inside, as seen from one of its sides; beside its rim from anywhere. */
@@ -109,11 +121,11 @@ PetscBool wall_near(const Walls *walls, PetscInt k, PetscReal t, const PetscReal
   const PetscReal half = thin ? wall->spec->thickness / 2 : 0;
   PetscReal X[3];
   if (!wall_stands(walls, k, t) && !wall_comes(walls, k, t)) return PETSC_FALSE;
-  to_origin(walls, wall, t, x, X);
+  wall_origin(walls, k, t, x, X);
   const Nearness near = form_near(wall->form, X, wall->spec->inside ? -1 : 1, within + half, place);
   if (near == NEAR_NOT) return PETSC_FALSE;
   if (thin) see_from(side, near, 2 * half, place);
-  from_origin(wall, place);
+  wall_turn(wall, place);
   return PETSC_TRUE;
 }
 
@@ -123,7 +135,7 @@ int wall_side(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x)
   WallPlace place;
   PetscReal X[3];
   if (!wall->form || !wall->form->thin) return 0;
-  to_origin(walls, wall, t, x, X);
+  wall_origin(walls, k, t, x, X);
   const Nearness near = form_near(wall->form, X, 1, PETSC_MAX_REAL, &place);
   return near == NEAR_RIM ? 0 : place.gap < 0 ? -1 : 1;
 }

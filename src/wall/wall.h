@@ -33,6 +33,25 @@ PetscReal walls_until_change(const Walls *walls, PetscReal t);
  * (less half the thickness), as it is from any side where a rim is nearest. */
 PetscBool wall_near(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x, PetscReal within, int side,
                     WallPlace *place);
+/* At most so many sides of a wall meet one position: in the plane two. */
+#define WALL_SIDES 3
+/* May it have more than one before material somewhere: corners as seen from there? */
+PetscBool wall_has_corners(const WallSpec *wall);
+/* wall_near for all sides of the wall that a position in a corner of it meets: the nearest first, as wall_near has it,
+ * then others that are seen from x within reach, where the distance is least among places around (sides.c). Returns how
+ * many. */
+PetscInt wall_sides(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x, PetscReal within, int side,
+                    WallPlace place[WALL_SIDES]);
+/* One side of a wall before x, known by its place there and its bend: it goes with the wall. */
+typedef struct {
+  PetscReal X[3];
+  WallPlace place; /* both in the frame of the wall */
+} WallAnchor;
+void wall_anchor(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x, const WallPlace *place,
+                 WallAnchor *anchor);
+/* That side as x sees it at time t, to second order in the way from where it was anchored; beyond its ends, too. */
+void wall_from_anchor(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x, const WallAnchor *anchor,
+                      WallPlace *place);
 /* On which side of wall k is x at time t, 1 or -1? 0 for walls that have an inside, and beyond the
  * rim of others, where neither side is behind the other: ask anew in every step. */
 int wall_side(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x);

@@ -461,32 +461,4 @@ for ranks in 1 2; do
   says err.txt "nodes of gmm at uneven distances: its points have from 0.025 to 0.1 m2" "fem is exact on the same mesh"
 done
 
-# --- a corner of a wall that a body fills: one contact for both sides ---
-cat >case.yaml <<'END'
-kinematics: plane-strain
-method: mpm
-analysis: {type: static, steps: 1}
-grid: {box: {min: [-1.5, -1.5], max: [1.5, 1.5]}, size: 0.25}
-bodies: [{name: block, shape: {box: {min: [-1, -1], max: [1, 0.5]}}, material: rubber}]
-materials: {rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
-walls: [{name: room, shape: {box: {min: [-1, -1], max: [1, 2]}}, inside: true}]
-loads: {gravity: [0, -10]}
-END
-for ranks in 1 2; do
-  expect "a room, $ranks" 0 on_ranks $ranks "$talus" check case.yaml
-  says err.txt "a body fills a corner of wall 'room'" "sides that are walls of their own"
-done
-warned "a line" "fills a corner of wall" -- --set 'walls=[{name: room, shape: {line: [[-1, 1.2], [-1, -1], [1, -1], [1, 1.2]]}}]'
-warned "walls of their own" -- --set 'walls=[{name: floor, shape: {half-space: {point: [0, -1], normal: [0, 1]}}}, {name: left, shape: {half-space: {point: [-1, 0], normal: [1, 0]}}}]'
-warned "round a corner of the wall" -- --set 'walls=[{name: post, shape: {box: {min: [-2, -2], max: [-1, -1]}}}]'
-warned "away from it" -- --set 'bodies[0].shape={box: {min: [-0.5, -1], max: [0.5, 0.5]}}' --set walls[0].friction=0.5
-warned "grains" -- --set 'materials.rubber={law: mohr-coulomb, density: 2000, young: 1e7, poisson: 0.3, friction_angle: 35, cohesion: 500}'
-cat >room.txt <<'END'
-grid={box: {min: [-1.5, -1.5, -1.5], max: [1.5, 1.5, 1.5]}, size: 0.5}
-bodies=[{name: block, shape: {cylinder: {base: [0, -1, 0], axis: [0, 1, 0], length: 1, radius: 1}}, material: rubber}]
-walls=[{name: cup, shape: {cylinder: {base: [0, -1, 0], axis: [0, 1, 0], length: 3, radius: 1}}, inside: true}]
-END
-expect "a cup" 0 "$talus" check case.yaml --set kinematics=3d --set 'loads.gravity=[0, -10, 0]' --set "$(sed -n 1p room.txt)" --set "$(sed -n 2p room.txt)" --set "$(sed -n 3p room.txt)"
-says err.txt "a body fills a corner of wall 'cup'"
-
 finish

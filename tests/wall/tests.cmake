@@ -1,6 +1,7 @@
 talus_test(wall/test_plane)
 talus_test(wall/test_space)
 talus_test(wall/test_moving)
+talus_test(wall/test_sides)
 talus_test(wall/test_mesh)
 talus_test(wall/test_surface)
 talus_test(wall/test_mistakes)

@@ -56,8 +56,8 @@ static ContactShare share_of_force(const Model *m)
 
 static void forget(Model *m, const ContactPoint *c)
 {
-  PetscReal *kept = point_real(m->points, POINT_CONTACT, c->owner) + c->wall * CONTACT_KEPT(m->dim);
-  for (PetscInt d = 0; d < m->dim; ++d) kept[2 + d] = 0;
+  PetscReal *kept = contact_kept_of(m->contact, m->points, c);
+  for (PetscInt d = 0; d < m->dim; ++d) kept[KEPT_FORCE + d] = 0;
 }
 
 PetscErrorCode ContactGoOn(Model *m, PetscReal *external)
@@ -339,8 +339,11 @@ PetscErrorCode ModelTractions(const Model *m, PetscInt wall, PetscInt *n, Contac
 
 void contact_force_on(const Model *m, PetscInt p, PetscReal force[3])
 {
-  const PetscReal *kept = point_real(m->points, POINT_CONTACT, p);
+  const PetscInt sides = contact_sides(m->c);
   force[0] = force[1] = force[2] = 0;
-  for (PetscInt k = 0; k < m->c->n_walls + m->c->n_interfaces; ++k, kept += CONTACT_KEPT(m->dim))
-    for (PetscInt d = 0; d < m->dim && (int)(kept[0] + 0.5) != CONTACT_OPEN; ++d) force[d] += kept[2 + d];
+  for (PetscInt i = 0; i < (m->c->n_walls + m->c->n_interfaces) * sides; ++i) {
+    const PetscReal *kept = contact_kept(m->points, p, i / sides, sides, i % sides);
+    const PetscBool open = (PetscBool)((int)(kept[KEPT_STATE] + 0.5) == CONTACT_OPEN);
+    for (PetscInt d = 0; d < m->dim && !open; ++d) force[d] += kept[KEPT_FORCE + d];
+  }
 }

@@ -78,7 +78,7 @@ static void check_twice(const Case *c, Diag *diag)
 static void reach_over(Model *m, PetscInt k, PetscInt p, const SurfacePair *pair)
 {
   const PetscInt partner = m->c->n_walls + k;
-  point_real(m->points, POINT_CONTACT, p)[partner * CONTACT_KEPT(m->dim) + 1] = pair->gap;
+  contact_kept(m->points, p, partner, contact_sides(m->c), 0)[KEPT_REACH] = pair->gap;
   contact_let_reach(m->points, p, pair->normal, pair->gap);
 }
 

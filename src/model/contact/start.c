@@ -72,25 +72,34 @@ static PetscBool stands_on(const Model *m, PetscInt p, const WallPlace *place)
                      !shape_contains(&body->shape, m->dim, beyond, 0));
 }
 
+/* Point p ends at that side of wall k. */
+static void reach_out(Model *m, PetscInt k, PetscInt side, PetscInt p, const WallPlace *place)
+{
+  const PetscInt sides = contact_sides(m->c);
+  PetscReal *kept = contact_kept(m->points, p, k, sides, side);
+  kept[KEPT_REACH] = place->gap;
+  contact_keep_normal(kept, m->dim, sides, place->normal);
+  contact_let_reach(m->points, p, place->normal, place->gap);
+}
+
 /* What stands nearer to a wall than its cell's side does touches it: the body was made to fit, and its surface is taken
  * back (dent) to the wall. A point inside the wall is a mistake (inside). */
 static void look_at_wall(Model *m, PetscInt k, PetscBool fits, Worst *inside, Worst *dent)
 {
-  WallPlace place;
+  WallPlace place[WALL_SIDES];
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal *x = point_real(m->points, POINT_X, p);
     const int side = wall_side(m->walls, k, m->time, x);
     const PetscReal far = PetscMax(contact_farthest(m->points, p), fits ? m->grid->smallest : 0);
-    if (!wall_near(m->walls, k, m->time, x, far, side, &place)) continue;
-    if (fits && !m->c->stage && stands_on(m, p, &place)) {
-      point_real(m->points, POINT_CONTACT, p)[k * CONTACT_KEPT(m->dim) + 1] = place.gap;
-      contact_let_reach(m->points, p, place.normal, place.gap);
+    const PetscInt n = wall_sides(m->walls, k, m->time, x, far, side, place);
+    for (PetscInt i = 0; i < n; ++i) {
+      if (fits && !m->c->stage && stands_on(m, p, &place[i])) reach_out(m, k, i, p, &place[i]);
+      take_worse(m, -place[i].gap, x, inside);
+      const PetscReal reach = contact_reach_of(m->points, p, place[i].normal);
+      if (!fits || place[i].gap <= THROUGH * m->grid->smallest || place[i].gap >= reach) continue;
+      take_worse(m, reach - place[i].gap, x, dent);
+      contact_take_back(m->points, p, place[i].normal, place[i].gap);
     }
-    take_worse(m, -place.gap, x, inside);
-    const PetscReal reach = contact_reach_of(m->points, p, place.normal);
-    if (!fits || place.gap <= THROUGH * m->grid->smallest || place.gap >= reach) continue;
-    take_worse(m, reach - place.gap, x, dent);
-    contact_take_back(m->points, p, place.normal, place.gap);
   }
 }
 

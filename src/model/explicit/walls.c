@@ -21,10 +21,7 @@
 
 static PetscReal dot(const PetscReal a[3], const PetscReal b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-static PetscReal *kept_of(const Model *m, const ContactPoint *c)
-{
-  return point_real(m->points, POINT_CONTACT, c->owner) + c->wall * CONTACT_KEPT(m->dim);
-}
+static PetscReal *kept_of(const Model *m, const ContactPoint *c) { return contact_kept_of(m->contact, m->points, c); }
 
 /* Another scheme has left a force and no gap: the surface is where the spring has that force. */
 static void take_over(ContactPoint *c)
@@ -197,10 +194,11 @@ void walls_follow(Model *m, Explicit *e)
     if (c->state == CONTACT_OPEN && !(e->dt > 0)) continue;
     move_of(m, e, c, move, &lead);
     for (int d = 0; d < 3; ++d) move[d] -= c->swept[d];
-    kept[0] = (PetscReal)c->state + CONTACT_SPRING;
-    kept[1] = PetscMax(THINNEST * first, PetscMin(contact_farthest(m->points, c->owner), c->reach - lead));
-    keep(m, e, c, move, kept + 2);
-    kept[2 + m->dim] = 1;
+    kept[KEPT_STATE] = (PetscReal)c->state + CONTACT_SPRING;
+    kept[KEPT_REACH] = PetscMax(THINNEST * first, PetscMin(contact_farthest(m->points, c->owner), c->reach - lead));
+    keep(m, e, c, move, kept + KEPT_FORCE);
+    kept[KEPT_STAYS(m->dim)] = 1;
+    contact_keep_normal(kept, m->dim, s->sides, c->normal);
   }
   heavy_go(m);
 }

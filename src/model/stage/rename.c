@@ -106,9 +106,30 @@ static PetscErrorCode RenameMeasures(const Case *c, const Case *from, const Tabl
   PetscFunctionReturn(0);
 }
 
+/* What carriers keep of each partner, for so many sides of it as another case has: a wall with corners has come, or
+ * the last one gone. No other wall has more than one. */
+static PetscErrorCode Refit(Column *column, PetscInt64 rows, PetscInt n, PetscInt dim, PetscInt before, PetscInt sides)
+{
+  const PetscInt old = contact_kept_partner(dim, before), width = contact_kept_partner(dim, sides);
+  const PetscInt both = PetscMin(contact_kept_side(dim, before), contact_kept_side(dim, sides));
+  PetscReal *data;
+
+  PetscFunctionBeginUser;
+  column->components = n * width;
+  if (before == sides) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1((size_t)PetscMax(rows * n * width, 1), &data));
+  for (PetscInt64 k = 0; k < rows * n; ++k)
+    PetscCall(PetscArraycpy(data + k * width, (PetscReal *)column->data + k * old, both));
+  if (column->owned) PetscCall(PetscFree(column->data));
+  column->data = data;
+  column->owned = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode RenamePartners(const Case *c, const Case *from, PetscInt dim, const Tables *tables)
 {
   const PetscInt n = c->n_walls + c->n_interfaces, before = from->n_walls + from->n_interfaces;
+  const PetscInt sides_before = contact_sides(from), width = contact_kept_partner(dim, sides_before);
   Table *points = tables_find(tables, "points");
   PetscInt *was, *rigid, n_rigid = 0;
 
@@ -123,9 +144,9 @@ static PetscErrorCode RenamePartners(const Case *c, const Case *from, PetscInt d
   PetscCall(PickRows(tables_find(tables, "rigid_walls"), n_rigid, rigid));
   for (PetscInt i = 0; points && i < points->n; ++i) {
     Column *column = &points->column[i];
-    if (strcmp(column->name, "contact") != 0 || column->components != before * CONTACT_KEPT(dim)) continue;
-    PetscCall(Pick(column, points->rows, (size_t)CONTACT_KEPT(dim) * sizeof(PetscReal), before, n, was));
-    column->components = n * CONTACT_KEPT(dim);
+    if (strcmp(column->name, "contact") != 0 || column->components != before * width) continue;
+    PetscCall(Pick(column, points->rows, (size_t)width * sizeof(PetscReal), before, n, was));
+    PetscCall(Refit(column, points->rows, n, dim, sides_before, contact_sides(c)));
   }
   PetscCall(PetscFree2(was, rigid));
   PetscFunctionReturn(0);

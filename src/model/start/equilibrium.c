@@ -52,9 +52,7 @@ PetscBool equilibrium_stays(const Model *m) { return m->initial.seeking && m->c-
 static void keep_surface(Model *m)
 {
   const Contact *s = m->contact;
-  for (PetscInt k = 0; s && k < s->n; ++k)
-    point_real(m->points, POINT_CONTACT, s->point[k].owner)[s->point[k].wall * CONTACT_KEPT(m->dim) + 1] =
-      s->point[k].reach;
+  for (PetscInt k = 0; s && k < s->n; ++k) contact_kept_of(s, m->points, s->point + k)[KEPT_REACH] = s->point[k].reach;
 }
 
 /* Points that stay where they are keep their volume: the J of their strain belongs to a smaller or larger

@@ -15,6 +15,7 @@ PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **
   (*contact)->dim = c->kinematics->dim;
   (*contact)->n_walls = c->n_walls;
   (*contact)->n_partners = c->n_walls + c->n_interfaces;
+  (*contact)->sides = contact_sides(c);
   PetscCall(RigidCreate(c, walls, diag, &(*contact)->n_rigid, &(*contact)->rigid));
   PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->wall));
   PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->impulse));
@@ -35,6 +36,7 @@ PetscErrorCode ContactDestroy(Contact **contact)
   PetscCall(PetscFree(s->N));
   PetscCall(PetscFree(s->lead));
   PetscCall(PetscFree(s->turn));
+  PetscCall(PetscFree(s->anchor));
   PetscCall(PetscFree(s->slot));
   PetscCall(PetscFree(s->divisor));
   PetscCall(PetscFree(s->wall));
@@ -160,14 +162,16 @@ static PetscErrorCode Commit(void *data, const NodalScene *scene)
   PetscReal f[3];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(scene->points->real[POINT_CONTACT], scene->points->n * s->n_partners * CONTACT_KEPT(dim)));
+  PetscCall(PetscArrayzero(scene->points->real[POINT_CONTACT],
+                           scene->points->n * s->n_partners * contact_kept_partner(dim, s->sides)));
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    PetscReal *kept = point_real(scene->points, POINT_CONTACT, c->owner) + c->wall * CONTACT_KEPT(dim);
-    kept[0] = (PetscReal)c->state;
-    kept[1] = reach_at_end(s, c, scene);
+    PetscReal *kept = contact_kept_of(s, scene->points, c);
+    kept[KEPT_STATE] = (PetscReal)c->state;
+    kept[KEPT_REACH] = reach_at_end(s, c, scene);
     contact_force(c, f);
-    for (PetscInt d = 0; d < dim && c->state != CONTACT_OPEN; ++d) kept[2 + d] = s->share.mean * f[d];
-    kept[2 + dim] = contact_stays(s, c);
+    for (PetscInt d = 0; d < dim && c->state != CONTACT_OPEN; ++d) kept[KEPT_FORCE + d] = s->share.mean * f[d];
+    kept[KEPT_STAYS(dim)] = contact_stays(s, c);
+    contact_keep_normal(kept, dim, s->sides, c->normal);
   }
   PetscFunctionReturn(0);
 }

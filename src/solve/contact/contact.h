@@ -11,6 +11,7 @@
  * for walls and interfaces. */
 #pragma once
 #include "boundary/frames.h"
+#include "solve/contact/contact_kept.h"
 #include "solve/contact/contact_law.h"
 #include "solve/contact/rigid.h"
 #include "solve/forces/nodal_force.h"
@@ -19,6 +20,8 @@ typedef struct {
   PetscInt owner; /* the material point, or the node */
   PetscInt wall;  /* or the number of walls + the interface */
   int side;
+  PetscInt slot_kept;  /* which of the sides that its owner remembers of the partner this is */
+  PetscInt anchor;     /* in a corner of the wall: this side of it, of Contact; else -1: what is nearest */
   PetscInt first, n;   /* nodes that carry it: node[first] .. of Contact; the first of them, */
   PetscInt own;        /* so many, are of its own body, others of the other one, */
   PetscInt slot;       /* and the first of their n x n pairs */
@@ -87,9 +90,12 @@ typedef struct Contact {
   RigidWall *rigid; /* walls with mass */
   PetscInt dim, n_walls;
   PetscInt n_partners; /* walls and interfaces */
+  PetscInt sides;      /* of each that may meet one carrier: contact_sides */
   PetscInt n, capacity;
   ContactPoint *point;
   PetscInt n_nodes, capacity_nodes, *node;
+  PetscInt n_anchors, capacity_anchors;
+  WallAnchor *anchor;
   PetscReal *N;
   PetscReal *lead; /* what N is at the surface beyond what it is at the material point */
   PetscReal *turn; /* of bodies in the plane: how N changes along the surface, (-n_y, n_x), 1/m */
@@ -112,10 +118,6 @@ typedef struct Contact {
  * laws of flow stretch without bound. */
 #define THINNEST 0.25
 #define THICKEST 2
-
-/* Numbers that a carrier of contact keeps for each partner from step to step: state, reach, and the
- * force `last`, of which it remembers how much stays. */
-#define CONTACT_KEPT(dim) (3 + (dim))
 
 /* Layers of nodes that a rank knows beyond those of its basis where bodies meet others: of the other
  * body's points in reach. */
@@ -149,6 +151,12 @@ void contact_take_back(Points *points, PetscInt p, const PetscReal n[3], PetscRe
 void contact_let_reach(Points *points, PetscInt p, const PetscReal n[3], PetscReal reach);
 /* What the carrier kept of its contact with a partner. */
 void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const PetscReal normal[3]);
+/* contact_corner.c. Which slots the sides of wall k before point p have of what p remembers, and what these remember of
+ * them: of new ones nothing. */
+void contact_find_slots(const Contact *contact, const Points *points, PetscInt p, PetscInt k, PetscInt n,
+                        const WallPlace *place, PetscInt slot[WALL_SIDES], const PetscReal *kept[WALL_SIDES]);
+/* In a corner each side goes on as it is at the start of the step: what is nearest may change from one to another. */
+PetscErrorCode ContactAnchor(Contact *contact, const NodalScene *scene, const WallPlace *place, ContactPoint *c);
 /* Its law; then its section, m2, and what adheres on that. */
 void contact_take_law(const Contact *contact, const NodalScene *scene, ContactPoint *c);
 void contact_take_section(const Contact *contact, const NodalScene *scene, PetscReal section, ContactPoint *c);
@@ -221,6 +229,11 @@ PetscBool contact_meets(const Contact *contact, ContactPoint *c, const NodalScen
 /* contact_force.c, contact_multiplier.c: what the nodal force does. */
 PetscErrorCode ContactAssemble(void *contact, const NodalScene *scene, const NodalOutput *out);
 PetscErrorCode ContactAugment(void *contact, const NodalScene *scene, PetscInt change, PetscBool *again);
+/* What its owner keeps of it. */
+static inline PetscReal *contact_kept_of(const Contact *contact, const Points *points, const ContactPoint *c)
+{
+  return contact_kept(points, c->owner, c->wall, contact->sides, c->slot_kept);
+}
 /* The wall with mass that it meets, or NULL. */
 static inline RigidWall *contact_rigid(const Contact *contact, const ContactPoint *c)
 {

@@ -70,7 +70,7 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
                            const SurfacePoint *p, const SurfacePair *pair)
 {
   const PetscInt partner = s->n_walls + interface;
-  const PetscReal *kept = point_real(scene->points, POINT_CONTACT, p->owner) + partner * CONTACT_KEPT(s->dim);
+  const PetscReal *kept = contact_kept(scene->points, p->owner, partner, s->sides, 0);
   ContactPoint *c = NULL;
 
   PetscFunctionBeginUser;

@@ -77,7 +77,7 @@ PetscErrorCode ContactAdd(Contact *s, ContactPoint **c)
     PetscCall(PetscRealloc((size_t)s->capacity * sizeof *s->point, &s->point));
   }
   *c = s->point + s->n++;
-  **c = (ContactPoint){.first = s->n_nodes, .slot = s->n_slots, .cover = 1};
+  **c = (ContactPoint){.first = s->n_nodes, .slot = s->n_slots, .cover = 1, .anchor = -1};
   PetscFunctionReturn(0);
 }
 
@@ -103,9 +103,9 @@ PetscErrorCode ContactAddNodes(Contact *s, ContactPoint *c, PetscInt n)
 
 void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const PetscReal normal[3])
 {
-  c->before = (ContactState)(int)(kept[0] + 0.5);
-  for (PetscInt d = 0; d < dim; ++d) c->last[d] = kept[2 + d];
-  c->stays = kept[2 + dim];
+  c->before = (ContactState)(int)(kept[KEPT_STATE] + 0.5);
+  for (PetscInt d = 0; d < dim; ++d) c->last[d] = kept[KEPT_FORCE + d];
+  c->stays = kept[KEPT_STAYS(dim)];
   c->state = c->before;
   for (int d = 0; d < 3; ++d) c->normal[d] = c->facing[d] = normal[d];
 }
@@ -226,31 +226,29 @@ static void take_lead(const NodalScene *scene, PetscInt p, PetscInt nn, const Pe
   }
 }
 
-/* The surface of a point, `at` in group g of the support, before wall k. */
-static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g, PetscInt at, PetscInt k)
+/* The surface of a point, `at` in group g of the support, before one side of wall k: slot and kept are those of that
+ * side. */
+static PetscErrorCode MeetSide(Contact *s, const NodalScene *scene, PetscInt g, PetscInt at, PetscInt k,
+                               WallPlace place, PetscInt slot, const PetscReal *kept, ContactPoint **met)
 {
   const PetscInt dim = s->dim, p = scene->seen ? scene->seen[g] : at;
   const Points *points = scene->points;
-  const PetscReal *x = point_real(points, POINT_X, p), *kept = point_real(points, POINT_CONTACT, p);
-  const int side = wall_side(s->walls, k, scene->t, x);
+  const PetscReal *x = point_real(points, POINT_X, p);
   const Material *material = scene->materials + points->material[p];
-  WallPlace place;
   ContactPoint *c = NULL;
 
   PetscFunctionBeginUser;
-  if (!meets_body(scene->c, k, points->body[p])) PetscFunctionReturn(0);
-  if (!wall_near(s->walls, k, scene->t, x, s->near + contact_farthest(points, p), side, &place)) PetscFunctionReturn(0);
-  const PetscReal reach =
-    contact_reach_left(scene, p, scene->c->walls[k].contact, kept + k * CONTACT_KEPT(dim), place.normal, place.gap);
+  *met = NULL;
+  const PetscReal reach = contact_reach_left(scene, p, scene->c->walls[k].contact, kept, place.normal, place.gap);
   const PetscInt nn = support_nodes(scene->support, g), *node = scene->support->node + scene->support->node_start[g];
   const PetscReal *N = support_N(scene->support, g, at), *dN = support_dN(scene->support, g, at, dim);
   PetscCall(ContactAdd(s, &c));
-  c->owner = p, c->wall = k, c->side = side;
+  c->owner = p, c->wall = k, c->slot_kept = slot;
   c->reach = reach;
   c->modulus[0] = material->wave_modulus, c->density[0] = material->density;
   c->stiffer = material_confined(material) / material->wave_modulus;
   contact_take_law(s, scene, c);
-  contact_remember(c, dim, kept + k * CONTACT_KEPT(dim), place.normal);
+  contact_remember(c, dim, kept, place.normal);
   place.gap -= reach;
   if (contact_passes(s, c, place.gap, scene->first)) {
     --s->n;
@@ -262,11 +260,37 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   PetscCall(ContactAddNodes(s, c, nn));
   for (PetscInt d = 0; d < dim; ++d) c->x[d] = x[d] - reach * place.normal[d];
   contact_take_section(s, scene, contact_section(scene, p, place.normal, (PetscReal[]){x[0], c->x[0]}), c);
-  if (kept[k * CONTACT_KEPT(dim)] == 0 && !c->gone) contact_start(scene, c);
+  if (kept[KEPT_STATE] == 0 && !c->gone) contact_start(scene, c);
   take_lead(scene, p, nn, dN, place.normal, reach, s->lead + c->first);
   for (PetscInt I = 0; I < nn; ++I) {
     s->node[c->first + I] = node[I];
     s->N[c->first + I] = N[I] + s->lead[c->first + I];
+  }
+  *met = c;
+  PetscFunctionReturn(0);
+}
+
+/* All sides of wall k that the point meets. */
+static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g, PetscInt at, PetscInt k)
+{
+  const PetscInt p = scene->seen ? scene->seen[g] : at;
+  const Points *points = scene->points;
+  const PetscReal *x = point_real(points, POINT_X, p), *kept[WALL_SIDES];
+  WallPlace place[WALL_SIDES];
+  PetscInt slot[WALL_SIDES];
+
+  PetscFunctionBeginUser;
+  if (!meets_body(scene->c, k, points->body[p])) PetscFunctionReturn(0);
+  const int side = wall_side(s->walls, k, scene->t, x);
+  const PetscInt n = wall_sides(s->walls, k, scene->t, x, s->near + contact_farthest(points, p), side, place);
+  contact_find_slots(s, points, p, k, n, place, slot, kept);
+  for (PetscInt i = 0; i < n; ++i) {
+    ContactPoint *c;
+    PetscCall(MeetSide(s, scene, g, at, k, place[i], slot[i], kept[i], &c));
+    if (!c) continue;
+    c->side = side;
+    place[i].gap = c->open;
+    if (n > 1) PetscCall(ContactAnchor(s, scene, &place[i], c));
   }
   PetscFunctionReturn(0);
 }
@@ -308,7 +332,7 @@ PetscErrorCode ContactFind(Contact *s, const NodalScene *scene)
   const Support *w = scene->support;
 
   PetscFunctionBeginUser;
-  s->n = s->n_nodes = s->n_slots = 0;
+  s->n = s->n_nodes = s->n_slots = s->n_anchors = 0;
   s->length = s->near = scene->grid->smallest;
   for (PetscInt g = 0; g < w->n_groups && s->n_walls; ++g) PetscCall(MeetGroup(s, scene, g));
   if (s->n_partners > s->n_walls) PetscCall(ContactFindBodies(s, scene));

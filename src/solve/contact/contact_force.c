@@ -15,6 +15,12 @@ void contact_place(const Contact *s, const ContactPoint *c, const PetscReal *du,
 static PetscBool see_wall(const Contact *s, ContactPoint *c, PetscReal t, const PetscReal x[3], WallPlace *place)
 {
   PetscReal along = 0, owner[3];
+  if (c->anchor >= 0) {
+    wall_from_anchor(s->walls, c->wall, t, x, s->anchor + c->anchor, place);
+    c->ahead = 0;
+    for (int d = 0; d < 3; ++d) c->ahead += c->reach * place->normal[d] * c->facing[d];
+    return PETSC_TRUE;
+  }
   if (!wall_near(s->walls, c->wall, t, x, 2 * s->near, c->side, place)) return PETSC_FALSE;
   for (int d = 0; d < 3; ++d) along += place->normal[d] * c->facing[d];
   if (along > ROUND_CORNER) return c->ahead = along * c->reach, PETSC_TRUE;

@@ -9,6 +9,8 @@ typedef struct {
 } Foot;
 enum { FACE = -1, EDGE = 3 };
 
+#define STRAIGHT 1e-12 /* sine squared between a way and the normal that it follows */
+
 typedef struct {
   const Facets *facets;
   const PetscReal *x;
@@ -180,4 +182,36 @@ Nearness facets_near(const Facets *f, const PetscReal x[3], int flip, PetscBool 
   for (int d = 0; d < 3; ++d) place->normal[d] = -found.normal[d];
   for (int k = 0; k < 9; ++k) place->curvature[k] = -found.curvature[k];
   return near;
+}
+
+typedef struct {
+  Probe probe;
+  int flip;
+  PetscReal within;
+  WallSides *sides;
+} Gathering;
+
+/* A facet that x stands straight before is a side, on its edge, too; nothing is narrowed by it. Most are like a nearer
+ * one. */
+static PetscReal gather_facet(void *context, PetscInt i)
+{
+  Gathering *all = context;
+  const Facets *f = all->probe.facets;
+  PetscReal v[3];
+  WallPlace place = {.gap = 0};
+  difference(all->probe.x, f->corner[i][0], v);
+  place.gap = all->flip * dot(v, f->normal[i]);
+  for (int d = 0; d < 3; ++d) place.normal[d] = all->flip * f->normal[i][d];
+  if (place.gap <= 0 || place.gap > all->within || sides_have(all->sides, &place)) return PETSC_MAX_REAL;
+  all->probe.nearest.square = PETSC_MAX_REAL;
+  const PetscReal square = probe_facet(&all->probe, i);
+  if (square - PetscSqr(place.gap) <= STRAIGHT * square) sides_add(all->sides, &place);
+  return PETSC_MAX_REAL;
+}
+
+void facets_sides(const Facets *f, const PetscReal x[3], int flip, PetscReal high, WallSides *sides)
+{
+  const PetscReal square = high < 1e150 ? high * high * (1 + 1e-12) : PETSC_MAX_REAL;
+  Gathering all = {.probe = {.facets = f, .x = x}, .flip = flip, .within = high, .sides = sides};
+  box_tree_nearest(f->tree, x, square, gather_facet, &all);
 }

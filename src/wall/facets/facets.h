@@ -43,6 +43,18 @@ PetscErrorCode FacetsDestroy(Facets **facets);
  * of `place`, all times flip. thin: there is no inside, and what counts is the distance alone. */
 Nearness facets_near(const Facets *facets, const PetscReal x[3], int flip, PetscBool thin, PetscReal high,
                      WallPlace *place);
+/* Of one form, before those that are hidden are left out. */
+#define WALL_SIDES_FOUND 16
+typedef struct {
+  PetscInt n;
+  WallPlace place[WALL_SIDES_FOUND];
+} WallSides;
+/* Is a nearer one there with a normal like it? */
+PetscBool sides_have(const WallSides *sides, const WallPlace *place);
+/* A place more, unless a nearer one has a normal like it. */
+void sides_add(WallSides *sides, const WallPlace *place);
+/* Adds the places whose normal leads to x, within `high` on the side flip of them. */
+void facets_sides(const Facets *facets, const PetscReal x[3], int flip, PetscReal high, WallSides *sides);
 /* The same without a look at what is known of places far away. least: no facet is farther, m. */
 Nearness facets_search(const Facets *facets, const PetscReal x[3], PetscReal least, WallPlace *place);
 

@@ -201,7 +201,6 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
   PetscCall(AdviseThin(m, diag));
   PetscCall(AdviseCells(m, diag));
   PetscCall(AdvisePulses(m, diag));
-  if (m->walls) PetscCall(AdviseCorners(m, diag));
   advise_down(m, diag);
   advise_passing(m, diag);
   advise_late(m, diag);

@@ -1,0 +1,88 @@
+#!/bin/sh
+# Corners of one wall hold a body that fills them by both sides: a block in a room without friction is pressed by its own
+# weight as a column is, whatever the room is made of, and with friction the room does what walls of their own do.
+. "$(dirname "$0")/library.sh"
+
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 2}
+grid: {box: {min: [-1.5, -1.5], max: [1.5, 1.5]}, size: 0.125}
+bodies: [{name: block, shape: {box: {min: [-1, -1], max: [1, 0.5]}}, material: rubber}]
+materials: {rubber: {law: neo-hookean, density: 10, young: 1e6, poisson: 0.3}}
+walls: [{name: room, shape: {box: {min: [-1, -1], max: [1, 2]}}, inside: true}]
+loads: {gravity: [0, -10]}
+measures:
+  across: {stress: xx, of: {tracer: [-0.9, -0.9]}}
+  along: {stress: yy, of: {tracer: [0.9, -0.9]}}
+  top: {displacement: y, of: {tracer: [0.99, 0.49]}}
+output: {fields: [displacement], every: end}
+END
+half='{half-space: {point: [0, -1], normal: [0, 1]}}, {half-space: {point: [-1, 0], normal: [1, 0]}}, {half-space: {point: [1, 0], normal: [-1, 0]}}'
+line='walls=[{name: room, shape: {line: [[-1, 1.2], [-1, -1], [1, -1], [1, 1.2]]}}]'
+frame='walls=[{name: room, shape: {polygon: [[-1.4, 1.2], [-1.4, -1.4], [1.4, -1.4], [1.4, 1.2], [1, 1.2], [1, -1], [-1, -1], [-1, 1.2]]}}]'
+union="walls=[{name: room, shape: {union: [$half]}}]"
+off='grid={box: {min: [-1.53, -1.45], max: [1.47, 1.55]}, size: 0.125}'
+
+# At small strains rho g (H - y), of which nu / (1 - nu) is across, and rho g H^2 / (2 M) at the top.
+pressed() {
+  name=$1
+  awk -F, 'END { exit !(($3 / -60 - 1) ^ 2 < 0.005 ^ 2 && ($4 / -140 - 1) ^ 2 < 0.005 ^ 2 && ($5 / -8.357e-5 - 1) ^ 2 < 0.002 ^ 2) }' \
+    run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
+}
+for ranks in 1 2 3; do
+  expect "a box, $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out run --force --quiet
+  pressed "a box, $ranks"
+  lacks err.txt warning
+done
+for room in "$line" "$frame" "$union" "$off"; do
+  expect "$room" 0 "$talus" run case.yaml --out run --force --quiet --set "$room"
+  pressed "$room"
+done
+expect "fem" 0 "$talus" run case.yaml --out run --force --quiet --set method=fem --set grid.size=0.0625
+pressed "fem"
+
+# One wall against three: moved, with friction and inertia, cut off and gone on with.
+same() {
+  name=$1 digits=$2
+  paste -d, run/history.csv "$3/history.csv" | awk -F, -v e="$digits" '
+    NR > 1 { for (k = 3; k <= 5; ++k) { d = $k - $(k + 5); d = d < 0 ? -d : d; a = $k < 0 ? -$k : $k; if (d > e * a + 1e-12) bad = 1 } n++ }
+    END { exit bad || n < 5 }' || fail "$name: $(tail -n 1 run/history.csv) and $(tail -n 1 "$3/history.csv")"
+}
+moved='contact: friction, friction: 0.3, motion: [{displacement: {x: 0.05, y: 0.1}, amplitude: [[0, 0], [0.1, 1]]}]'
+room="walls=[{name: room, shape: {box: {min: [-1, -1], max: [1, 2]}}, inside: true, $moved}]"
+own="walls=[{name: floor, shape: {half-space: {point: [0, -1], normal: [0, 1]}}, $moved}, {name: left, shape: {half-space: {point: [-1, 0], normal: [1, 0]}}, $moved}, {name: right, shape: {half-space: {point: [1, 0], normal: [-1, 0]}}, $moved}]"
+for analysis in 'dynamic, scheme: newmark, step: 5e-3, end: 0.1' 'explicit, step: 5e-3, end: 0.1'; do
+  set -- --set "analysis={type: $analysis}" --set materials.rubber.density=1000 --set grid.size=0.25
+  expect "walls of their own, $analysis" 0 "$talus" run case.yaml --out own --force --quiet "$@" --set "$own"
+  expect "one wall, $analysis" 0 "$talus" run case.yaml --out run --force --quiet "$@" --set "$room"
+  same "one wall, $analysis" 1e-3 own
+  expect "half of it, $analysis" 0 "$talus" run case.yaml --out half --force --quiet "$@" --set "$room" --set analysis.end=0.05 --set checkpoint.steps=10
+  expect "the rest, $analysis" 0 "$talus" run --resume half --quiet --set analysis.end=0.1
+  cmp -s half/history.csv run/history.csv || fail "$name: $(tail -n 1 half/history.csv), not $(tail -n 1 run/history.csv)"
+done
+
+# Half-spaces in the first stage, of which the state knows one side each; then the room in their place, and they again.
+cat >>case.yaml <<'END'
+stages:
+  - name: own
+  - name: room
+    walls:
+      - {name: floor, absent: true}
+      - {name: left, absent: true}
+      - {name: right, absent: true}
+      - {name: room, shape: {box: {min: [-1, -1], max: [1, 2]}}, inside: true}
+  - name: again
+    walls:
+      - {name: room, absent: true}
+      - {name: floor, shape: {half-space: {point: [0, -1], normal: [0, 1]}}}
+      - {name: left, shape: {half-space: {point: [-1, 0], normal: [1, 0]}}}
+      - {name: right, shape: {half-space: {point: [1, 0], normal: [-1, 0]}}}
+END
+own='walls=[{name: floor, shape: {half-space: {point: [0, -1], normal: [0, 1]}}}, {name: left, shape: {half-space: {point: [-1, 0], normal: [1, 0]}}}, {name: right, shape: {half-space: {point: [1, 0], normal: [-1, 0]}}}]'
+for ranks in 1 3; do
+  expect "stages, $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out run --force --quiet --set "$own"
+  awk -F, 'NR > 2 && $2 % 2 == 0 { n += 1; if (($4 / -60 - 1) ^ 2 > 0.005 ^ 2 || ($5 / -140 - 1) ^ 2 > 0.005 ^ 2) bad = 1 }
+    END { exit bad || n < 3 }' run/history.csv || { fail "$name"; cat run/history.csv; }
+done
+finish
