@@ -33,7 +33,7 @@ static PetscBool stands_alone(const Case *c) { return case_is_static(&c->analysi
 /* Nodes that follow others make a matrix without lumped mass well conditioned, and take less energy than what holds
  * them to linear motion; with lumped mass they cost what swings a fifth more iterations. What has come to rest in a
  * stage before must find the same nodes. Where statics yields those follow, too, that are reached a little more
- * (docs/theory.md, section 62). Beside corners of what is bonded they make energy (section 73). */
+ * (docs/theory.md, section 62). What is bonded asks for more of fewer nodes then, and creeps (section 73). */
 static PetscReal share_that_follows(const Case *c)
 {
   const PetscBool yields = anything_yields(c);

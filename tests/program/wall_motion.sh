@@ -93,4 +93,31 @@ END
 expect "sand at rest" 0 "$talus" run sand.yaml --out sand --force --quiet
 awk -F, 'NR == 2 { exit !(($3 - 5000) ^ 2 < 1e-6 && $4 * $4 < 1e-6) }' sand/history.csv || fail "$name: $(cat sand/history.csv)"
 awk -F, 'END { exit !($4 < -0.39 * $3) }' sand/history.csv || fail "$name: friction $(tail -n 1 sand/history.csv)"
+
+# A disk that is bonded in a drum, off the grid's lines: more points are held than nodes can follow. What the drum's motor
+# does is the energy that it has then; and short steps make none.
+cat >drum.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+basis: {gimp: {}}
+analysis: {type: dynamic, end: 1, step: 0.02}
+grid: {box: {min: [-0.6, -0.6], max: [0.6, 0.6]}, size: 0.1}
+bodies: [{name: b, shape: {circle: {centre: [0.013, 0.021], radius: 0.43}}, points_per_cell: 4, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
+walls: [{name: w, shape: {circle: {centre: [0.013, 0.021], radius: 0.43}}, inside: true, contact: bonded, motion: [{rotation: {centre: [0.013, 0.021], rate: 3}, amplitude: [[0, 0], [0.6, 1]]}]}]
+measures: {all: {energy: mechanical}, came: {energy: external}, transfer: {energy: transfer}, torque: {wall_torque: z, of: {wall: w}, about: [0.013, 0.021]}}
+output: {fields: [displacement], every: end}
+END
+exact=241.664 # I w^2 / 2, I = rho pi R^4 / 2
+for ranks in 1 3; do
+  expect "a drum's motor, $ranks" 0 on_ranks $ranks "$talus" run drum.yaml --out drum --force --quiet
+  awk -F, -v e=$exact 'END { exit !(($3 / e - 1) ^ 2 < 0.01 ^ 2 && ($4 / $3 - 1) ^ 2 < 0.002 ^ 2 && ($5 / e) ^ 2 < 0.002 ^ 2) }' drum/history.csv || fail "$name: $(tail -n 1 drum/history.csv)"
+done
+# The torque times the angle is that work, too: the drum turns by 1.5 t^2 / 0.6 * 1 rad.
+awk -F, -v e=$exact 'function angle(t) { return t < 0.6 ? 2.5 * t * t : 0.9 + 3 * (t - 0.6) }
+  NR == 2 { t = $1 } NR > 2 { work += $6 * (angle($1) - angle(t)); t = $1 } END { exit !((work / $4 - 1) ^ 2 < 0.005 ^ 2) }' drum/history.csv || fail "$name: torque"
+for basis in gimp bspline cell; do
+  expect "short steps, $basis" 0 "$talus" run drum.yaml --out drum --force --quiet --set materials.m.young=1e5 --set analysis.step=0.00125 --set analysis.end=0.3 --set "basis={$basis: {}}"
+  awk -F, 'END { exit !(($5 / $4) ^ 2 < 0.01 ^ 2) }' drum/history.csv || fail "$name: $(tail -n 1 drum/history.csv)"
+done
 finish

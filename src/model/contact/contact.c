@@ -23,19 +23,10 @@ static ContactMotion motion_of(const Model *m, const ContactMass *whole, PetscRe
                          .du = m->nodes->du,
                          .rate = 1 / dt,
                          .pulls = !start,
-                         .start = start,
-                         .bonded = m->scheme->middle};
+                         .start = start};
 }
 
 PetscBool contact_holds(const Model *m) { return m->scheme->inertia && !m->scheme->middle; }
-
-/* Does what is in contact start a step with its wall's velocity? With a scheme that balances in the middle only what
- * is bonded: it would end the step with the opposite of what it lacked, and points that go through cells make that
- * grow. */
-static PetscBool starts_alike(const Model *m)
-{
-  return contact_holds(m) || (m->scheme->inertia && case_has_contact(m->c, CONTACT_BONDED));
-}
 
 /* With inertia a wall's force acts over the whole step, and Newmark's formulas would weigh it as that of one end:
  * so it is asked for as much larger, and what they remember of the last step's is taken back, or it would push what
@@ -136,7 +127,7 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
   contact_prepare(m->contact, m->time, m->initial.seeking ? 0 : dt, inertia, share_of_force(m));
   for (RigidWall *b = m->contact->rigid; b < m->contact->rigid + m->contact->n_rigid; ++b)
     rigid_begin(b, m->walls, m->c, m->time, dt, share_of_force(m).mean, m->scheme->middle);
-  if (!starts_alike(m)) PetscFunctionReturn(0);
+  if (!contact_holds(m)) PetscFunctionReturn(0);
   PetscCall(Project(m, m->nodes->v, m->nodes->impulse, dt, PETSC_TRUE));
   PetscFunctionReturn(0);
 }
@@ -167,8 +158,8 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; s && k < s->n_rigid; ++k) rigid_end(s->rigid + k);
-  if (!s || !starts_alike(m)) PetscFunctionReturn(0);
-  if (contact_holds(m)) PetscCall(ProjectEnd(m, dt, energy));
+  if (!s || !contact_holds(m)) PetscFunctionReturn(0);
+  PetscCall(ProjectEnd(m, dt, energy));
   for (PetscInt k = 0; k < s->n_partners; ++k) {
     energy->friction += s->impulse[k].sliding;
     energy->transfer -= s->impulse[k].sliding;

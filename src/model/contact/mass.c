@@ -117,8 +117,8 @@ PetscErrorCode ContactMassCreate(const Model *m, ContactMass *mass)
 
   PetscFunctionBeginUser;
   *mass = (ContactMass){0};
-  /* points keep the energy, not nodes, but for what is bonded, whose motion must not gain any */
-  if ((m->method->restores_grid && !m->scheme->middle) || m->c->analysis.mass == MASS_LUMPED) PetscFunctionReturn(0);
+  /* points keep the energy of mpm, not nodes */
+  if (m->method->restores_grid || m->c->analysis.mass == MASS_LUMPED) PetscFunctionReturn(0);
   PetscCall(PetscNew(&matrix));
   MassSolve *c = &matrix->solve;
   PetscCall(MassSolveCreate(m->space, c));

@@ -210,7 +210,6 @@ typedef struct {
   PetscReal rate;      /* times `swept` (work: `passes`) it is the velocity of the wall */
   PetscBool pulls;     /* may the wall pull? Else only what moves into it is stopped */
   PetscBool start;     /* of those in contact before the step, or of those in contact after it? */
-  PetscBool bonded;    /* of nothing else? */
 } ContactMotion;
 
 /* Collective. The least change, by mass, of nodal motion that lets points in contact go with their

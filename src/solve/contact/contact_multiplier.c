@@ -41,13 +41,21 @@
 #define RUBS 10
 #define HIGHER 1.01 /* a penalty that could rise by less has risen: moduli that are alike differ by round-off */
 
+/* Of what is bonded more points ask than nodes can follow: what they cannot have stays as a slip, and from step to step
+ * forces of those points grow against each other. They are none to the nodes until points have moved, and then the
+ * midpoint rule takes nothing of the energy that they make: so none of them goes on. */
+static PetscBool begins_anew(const Contact *s, const ContactPoint *c)
+{
+  return (PetscBool)(c->law.kind == CONTACT_BONDED && s->share.moves && !s->share.inertia);
+}
+
 /* Those of the last step, and as much more or less as the gap that it left takes away: of a stiff body that
  * is no little force, and if it let go everywhere at once nothing would hold it; and what rests is to stay
  * where it is. What had none and touches the wall gets one so small that it counts for nothing: it is in
  * contact from the first iteration on. */
 static void first_multiplier(const Contact *s, ContactPoint *c)
 {
-  const PetscReal whole = 1 / s->share.mean;
+  const PetscReal whole = begins_anew(s, c) ? 0 : 1 / s->share.mean;
   c->multiplier = (ContactForce){0};
   for (int d = 0; d < 3; ++d) c->multiplier.pressure += whole * c->last[d] * c->normal[d];
   for (int d = 0; d < 3; ++d) c->multiplier.shear[d] = whole * c->last[d] - c->multiplier.pressure * c->normal[d];
@@ -63,14 +71,14 @@ static PetscReal stiffness_of(const ContactPoint *c, PetscReal h, PetscReal iner
   return other > 0 ? k * other / (k + other) : k;
 }
 
-/* A chord of what turns leads inwards, where forces of the end would do work that no torque does; the mean of those of
- * both ends, which statics have, does what the torque does along the chord. */
+/* A chord of what turns leads inwards, where forces of the end would do work that no torque does; those of the middle, or
+ * the mean of both ends that statics have, do what the torque does along the chord. */
 static void sweep(const Contact *s, ContactPoint *c, PetscReal t, PetscReal dt)
 {
   PetscReal x[3];
   wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
   for (int d = 0; d < 3; ++d) c->passes[d] = c->swept[d];
-  if (!s->share.moves) return;
+  if (!s->share.inertia) return;
   for (int d = 0; d < 3; ++d) x[d] = c->x[d] - c->swept[d] / 2;
   wall_motion(s->walls, c->wall, t, t + dt, x, c->passes);
 }

@@ -44,8 +44,8 @@ static unsigned char held_of(const ContactPoint *c, const ContactMotion *m)
 {
   const ContactState state = m->start ? c->before : c->state;
   const PetscBool meets = state != CONTACT_OPEN || (m->start && c->touches);
-  if ((m->start && c->gone) || (m->bonded && c->law.kind != CONTACT_BONDED)) return 0;
-  return state == CONTACT_STICKS || (meets && (c->law.kind == CONTACT_STICK || m->bonded)) ? 3 : meets;
+  if (m->start && c->gone) return 0;
+  return state == CONTACT_STICKS || (meets && c->law.kind == CONTACT_STICK) ? 3 : meets;
 }
 
 /* Motion of a contact point along its wall, 3 numbers. */
