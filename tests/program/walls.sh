@@ -94,6 +94,22 @@ expect "a wall jumps" 0 "$talus" check jumps.yaml
 says err.txt "wall 'floor' jumps by 0.1 m at the start"
 expect "a wall starts" 0 "$talus" check jumps.yaml --set 'walls[0].motion[0].amplitude=[[0, 0], [0.1, 1]]'
 ! grep -q jumps err.txt || fail "$name: $(cat err.txt)"
+# Nor is what an earlier stage has moved.
+cat >jumped.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, end: 1, steps: 2}
+grid: {box: {min: [0, 0], max: [0.5, 1]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [0.5, 0.5]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{name: lift, on: {boundary: bottom}, displacement: {y: 0.01}}]
+walls: [{name: lid, shape: {half-space: {point: [0, 0.5], normal: [0, -1]}}, motion: [{displacement: {y: -0.01}}]}]
+stages: [{name: one}, {name: two, analysis: {type: dynamic, end: 0.1, step: 0.01}}]
+END
+expect "a wall has been moved" 0 "$talus" check jumped.yaml
+! grep -q jumps err.txt || fail "$name: $(cat err.txt)"
+expect "a wall comes and jumps" 0 "$talus" check jumped.yaml --set 'stages[1].walls=[{name: side, shape: {half-space: {point: [0.5, 0], normal: [-1, 0]}}, motion: [{displacement: {x: -0.01}}]}]'
+says err.txt "wall 'side' jumps by 0.01 m at the start"
 # A block squeezed by a millionth of its height bears what its modulus says, E / (1 - nu^2) strain, however small: what
 # gaps of a fixed size leave would be a third of it.
 cat >squeezed.yaml <<'END'

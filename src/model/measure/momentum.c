@@ -83,7 +83,11 @@ static PetscErrorCode Spin(Model *m, const MeasureSpec *s, PetscInt index, Petsc
 }
 
 const Measure measure_momentum = {
-  .key = "momentum", .no_radial = PETSC_TRUE, .number = {.unit = "kg m/s", .help = "linear momentum", .sum = momentum}};
+  .key = "momentum",
+  .no_radial = PETSC_TRUE,
+  .number = {.unit = "kg m/s",
+             .help = "linear momentum of bodies; a wall with `mass` has that times its `wall_velocity`",
+             .sum = momentum}};
 const Measure measure_angular_momentum = {
   .key = "angular_momentum",
   .takes = MEASURE_SPIN_AXIS,

@@ -1,4 +1,5 @@
-/* What is moved at once when dynamics begin, in the first step however short that is: hardly ever meant, and said. */
+/* What is moved at once when dynamics begin, in the first step however short that is: hardly ever meant, and said. What
+ * an earlier stage moves has come there. */
 #include "case/motion.h"
 #include "model/model_private.h"
 
@@ -26,7 +27,7 @@ static void advise_wall(const Model *m, PetscInt k, Diag *diag)
   const PetscReal t = m->time;
   PetscReal min[3], max[3], x[3] = {0, 0, 0}, way[3] = {0, 0, 0}, far = 0;
   char path[64];
-  if (!wall->n_motions || wall->has_mass) return;
+  if (!wall->n_motions || wall->has_mass || wall->absent || wall->since < m->c->stage) return;
   wall_bounds(m->walls, k, t, min, max);
   for (int corner = 0; corner < 2; ++corner) {
     for (PetscInt d = 0; d < m->dim; ++d)
@@ -48,7 +49,7 @@ static void advise_motion(const Model *m, PetscInt k, Diag *diag)
   const PetscReal nowhere[3] = {0, 0, 0};
   PetscReal far = 0;
   char path[64];
-  if (motion->absent || motion->kind != MOTION_DISPLACEMENT) return;
+  if (motion->absent || motion->kind != MOTION_DISPLACEMENT || motion->amplitude.since < m->c->stage) return;
   for (PetscInt d = 0; d < m->dim; ++d) {
     if (!motion->component[d]) continue;
     const PetscReal way = motion_increment(m->c, motion, nowhere, d, m->time, soon(m));
