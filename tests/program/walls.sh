@@ -102,7 +102,7 @@ analysis: {type: static, end: 1, steps: 2}
 grid: {box: {min: [0, 0], max: [0.5, 1]}, size: 0.25}
 bodies: [{name: b, shape: {box: {min: [0, 0], max: [0.5, 0.5]}}, material: m}]
 materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
-boundary: [{name: lift, on: {boundary: bottom}, displacement: {y: 0.01}}]
+boundary: [{name: lift, on: {boundary: bottom}, displacement: {y: 0.01}}, {on: {boundary: left}, fix: [x]}]
 walls: [{name: lid, shape: {half-space: {point: [0, 0.5], normal: [0, -1]}}, motion: [{displacement: {y: -0.01}}]}]
 stages: [{name: one}, {name: two, analysis: {type: dynamic, end: 0.1, step: 0.01}}]
 END
