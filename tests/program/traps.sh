@@ -461,4 +461,23 @@ for ranks in 1 2; do
   says err.txt "nodes of gmm at uneven distances: its points have from 0.025 to 0.1 m2" "fem is exact on the same mesh"
 done
 
+# --- a bonded wall that holds nothing ---
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+basis: {cell: {}}
+analysis: {type: dynamic, end: 0.2, step: 0.01}
+grid: {box: {min: [-1.03, -1.05], max: [0.97, 0.95]}, size: 0.1}
+bodies: [{name: b, shape: {box: {min: [-0.4, -0.4], max: [0.4, 0.4]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e5, poisson: 0.3}}
+walls: [{name: w, shape: {half-space: {point: [0, -0.4], normal: [0, 1]}}, contact: bonded}]
+loads: {gravity: [0, -10]}
+measures: {foot: {displacement: y, of: {tracer: [0, -0.39]}}}
+END
+warned "a wall below" "nothing touches wall 'w' at the start" -- --set walls[0].shape.half-space.point=[0,-0.41]
+warned "a wall beside the lines" --
+# Its surface in the middle of a row of cells, where Gauss's points are nearer to their cell's side than to it.
+expect "held in the middle of a cell" 0 "$talus" run case.yaml --out held --force --quiet
+awk -F, 'END { exit !($3 > -0.002 && $3 < 0) }' held/history.csv || fail "$name: $(tail -n 1 held/history.csv)"
+
 finish

@@ -3,6 +3,7 @@
 #include "model/model_private.h"
 
 #define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
+#define TOUCHES 1e-6 /* of a cell: what is so near is in contact (contact_find.c) */
 #define FITS 1e-3    /* of the distance of a wall: so near to it ends what stands on it */
 #define PART 0.5     /* likewise, as its volume and its share of the surface tell it */
 #define SHARP \
@@ -82,11 +83,20 @@ static void reach_out(Model *m, PetscInt k, PetscInt side, PetscInt p, const Wal
   contact_let_reach(m->points, p, place->normal, place->gap);
 }
 
+/* Does point p touch that side of wall k, as contact will see it? */
+static PetscBool touches(const Model *m, PetscInt k, PetscInt side, PetscInt p, const WallPlace *place)
+{
+  const PetscReal kept = contact_kept(m->points, p, k, contact_sides(m->c), side)[KEPT_REACH];
+  const PetscReal reach = kept > 0 ? kept : contact_reach_of(m->points, p, place->normal);
+  return (PetscBool)(place->gap - reach <= TOUCHES * m->grid->smallest);
+}
+
 /* What stands nearer to a wall than its cell's side does touches it: the body was made to fit, and its surface is taken
- * back (dent) to the wall. A point inside the wall is a mistake (inside). */
-static void look_at_wall(Model *m, PetscInt k, PetscBool fits, Worst *inside, Worst *dent)
+ * back (dent) to the wall. A point inside the wall is a mistake (inside). Says whether any touches it. */
+static PetscBool look_at_wall(Model *m, PetscInt k, PetscBool fits, Worst *inside, Worst *dent)
 {
   WallPlace place[WALL_SIDES];
+  PetscBool any = PETSC_FALSE;
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal *x = point_real(m->points, POINT_X, p);
     const int side = wall_side(m->walls, k, m->time, x);
@@ -95,12 +105,14 @@ static void look_at_wall(Model *m, PetscInt k, PetscBool fits, Worst *inside, Wo
     for (PetscInt i = 0; i < n; ++i) {
       if (fits && !m->c->stage && stands_on(m, p, &place[i])) reach_out(m, k, i, p, &place[i]);
       take_worse(m, -place[i].gap, x, inside);
+      any = any || touches(m, k, i, p, &place[i]);
       const PetscReal reach = contact_reach_of(m->points, p, place[i].normal);
       if (!fits || place[i].gap <= THROUGH * m->grid->smallest || place[i].gap >= reach) continue;
       take_worse(m, reach - place[i].gap, x, dent);
       contact_take_back(m->points, p, place[i].normal, place[i].gap);
     }
   }
+  return any;
 }
 
 static PetscErrorCode TellThrough(const Model *m, PetscInt k, Worst *inside, Diag *diag)
@@ -150,6 +162,22 @@ static PetscErrorCode TellDent(const Model *m, PetscInt k, Worst *dent, Diag *di
   PetscFunctionReturn(0);
 }
 
+/* Collective. Bonded is what touches when the wall comes. */
+static PetscErrorCode TellLoose(const Model *m, PetscInt k, PetscBool any, Diag *diag)
+{
+  const WallSpec *wall = m->c->walls + k;
+  char path[64];
+
+  PetscFunctionBeginUser;
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_BOOL, MPI_LOR, m->comm));
+  if (any || wall->contact != CONTACT_BONDED || wall->absent || wall->from > 0) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(path, sizeof path, "walls[%d].contact", (int)k));
+  diag_warning(diag, path, "nothing touches wall '%s' at the start: what is bonded is held if it does, and nothing is",
+               wall->name);
+  diag_hint(diag, "let a body's surface and the wall's be the same; `stick` holds what comes to it later");
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode WallsStart(Model *m, Diag *diag)
 {
   PetscFunctionBeginUser;
@@ -161,8 +189,9 @@ PetscErrorCode WallsStart(Model *m, Diag *diag)
   PetscCall(InterfacesStart(m, diag));
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
     Worst inside = {0}, dent = {0};
-    look_at_wall(m, k, PETSC_TRUE, &inside, &dent);
+    const PetscBool any = look_at_wall(m, k, PETSC_TRUE, &inside, &dent);
     if (m->c->stage) continue; /* bodies are elsewhere */
+    PetscCall(TellLoose(m, k, any, diag));
     PetscCall(TellThrough(m, k, &inside, diag));
     PetscCall(TellDent(m, k, &dent, diag));
   }
@@ -182,7 +211,7 @@ PetscErrorCode WallsCome(Model *m, const Case *from, Diag *diag)
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
     Worst inside = {0}, dent = {0};
     if (m->c->walls[k].absent || wall_stood(&m->c->walls[k], m->c, from)) continue;
-    look_at_wall(m, k, PETSC_FALSE, &inside, &dent);
+    (void)look_at_wall(m, k, PETSC_FALSE, &inside, &dent);
     PetscCall(TellThrough(m, k, &inside, diag));
   }
   PetscFunctionReturn(0);

@@ -250,13 +250,10 @@ static PetscReal depth_of(const Seeding *s, const SeedPart *part, const PetscRea
 static PetscReal reach_of(const Seeding *s, PetscInt k, const PetscReal *x, PetscInt q, const PetscReal *position,
                           PetscReal section, PetscReal whole)
 {
-  static const unsigned char inside[CELL_MOST_SIDES] = {0};
   const CellType type = grid_cell_type(s->source, s->cells[k]);
   const SeedRule *rule = seed_rule(s, s->cells[k]);
-  PetscReal at[3];
   if (!s->cut || s->cut[k] < 0) return seed_reach(type, x, position, section, rule, q, s->outer + k * CELL_MOST_SIDES);
-  cell_position(type, x, rule->xi + q * s->source->dim, at);
-  return depth_of(s, s->part + s->cut[k] + q, position, seed_reach(type, x, at, whole, rule, q, inside),
+  return depth_of(s, s->part + s->cut[k] + q, position, seed_reach_inside(type, x, whole, rule, q),
                   PetscPowReal(whole, 1 / (PetscReal)s->source->dim));
 }
 
