@@ -59,16 +59,6 @@ PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *positio
   return surface < PETSC_MAX_REAL ? surface : reach;
 }
 
-PetscReal seed_reach_inside(CellType type, const PetscReal *x, PetscReal section, const SeedRule *rule, PetscInt q)
-{
-  static const unsigned char inside[CELL_MOST_SIDES] = {0};
-  const Cell *cell = cells + type;
-  PetscReal at[3];
-  cell_position(type, x, rule->xi + q * cell->dim, at);
-  const PetscReal reach = seed_reach(type, x, at, section, rule, q, inside);
-  return cell->nodes == cell->dim + 1 ? reach : PetscMax(reach, narrowest(cell, x, rule) / 2);
-}
-
 /* Sides that are not at right angles, as where a curved surface ends at a plane of symmetry, have no corner that
  * counts: towards a wall between their normals it would be farther ahead than the surface of the points beside is,
  * which know of none, by the angle; the nearest side is enough there. */

@@ -2,7 +2,8 @@
 #include "points/fields.h"
 #include "points/seed/seed.h"
 
-#define AHEAD 0.1 /* of the side of a point's part: so far a surface is looked for in front of it */
+#define AHEAD 0.1  /* of the side of a point's part: so far a surface is looked for in front of it */
+#define FLUSH 1e-6 /* of the side of a point's part: the surface is there */
 
 void seed_path(PetscInt body, const char *key, size_t size, char *path)
 {
@@ -231,8 +232,8 @@ static PetscBool shares_equally(const Seeding *s, CellType type)
 }
 
 /* Where the surface cuts a cell: what the shape says of it. Beyond what a whole part has (usual) only who was given the
- * surface that is so near knows it, which comes nearer towards that: nobody else stands before it. side: of a whole
- * part. */
+ * surface that is so near knows it, which comes nearer towards that, or whose whole part, a square or cube, ends there:
+ * nobody else stands before it. side: of a whole part. */
 static PetscReal depth_of(const Seeding *s, const SeedPart *part, const PetscReal *position, PetscReal usual,
                           PetscReal side)
 {
@@ -240,6 +241,7 @@ static PetscReal depth_of(const Seeding *s, const SeedPart *part, const PetscRea
   const PetscReal depth = shape_depth(&s->body->shape, dim, position, side);
   PetscReal square = 0, ahead[3];
   for (PetscInt d = 0; d < dim; ++d) square += part->face[d] * part->face[d];
+  if (part->whole && PetscAbsReal(depth - side / 2) < FLUSH * side) return depth;
   if (depth <= usual || square == 0) return PetscMin(depth, usual);
   for (PetscInt d = 0; d < dim; ++d) ahead[d] = position[d] + AHEAD * side * part->face[d] / PetscSqrtReal(square);
   const PetscReal nearer = depth - shape_depth(&s->body->shape, dim, ahead, side);
@@ -250,10 +252,13 @@ static PetscReal depth_of(const Seeding *s, const SeedPart *part, const PetscRea
 static PetscReal reach_of(const Seeding *s, PetscInt k, const PetscReal *x, PetscInt q, const PetscReal *position,
                           PetscReal section, PetscReal whole)
 {
+  static const unsigned char inside[CELL_MOST_SIDES] = {0};
   const CellType type = grid_cell_type(s->source, s->cells[k]);
   const SeedRule *rule = seed_rule(s, s->cells[k]);
+  PetscReal at[3];
   if (!s->cut || s->cut[k] < 0) return seed_reach(type, x, position, section, rule, q, s->outer + k * CELL_MOST_SIDES);
-  return depth_of(s, s->part + s->cut[k] + q, position, seed_reach_inside(type, x, whole, rule, q),
+  cell_position(type, x, rule->xi + q * s->source->dim, at);
+  return depth_of(s, s->part + s->cut[k] + q, position, seed_reach(type, x, at, whole, rule, q, inside),
                   PetscPowReal(whole, 1 / (PetscReal)s->source->dim));
 }
 

@@ -70,9 +70,6 @@ void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscIn
  * the section, or of the volume in space. */
 PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section,
                      const SeedRule *rule, PetscInt q, const unsigned char *outer);
-/* Of the whole part of a cell that its q-th point stands for, inside of the body: in quadrilaterals and hexahedra at
- * least half of its narrowest way, though points of Gauss's rule are nearer to their cell's side. */
-PetscReal seed_reach_inside(CellType type, const PetscReal *x, PetscReal section, const SeedRule *rule, PetscInt q);
 
 /* From the same point to these sides, or to the corner or edge where several of them meet at right angles; of others to
  * the nearest; 0 inside. */
