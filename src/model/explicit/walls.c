@@ -12,7 +12,6 @@
  * strain, and nothing drifts that sticks. Of waves that the grid resolves the dashpot takes a share
  * of (omega h / c)^2; without it the springs and second mapping (`musl`) shake a block that rests. */
 #include "model/explicit/explicit.h"
-#include "solve/contact/spring.h"
 
 #define DASHPOT 0.5 /* of the impedance of the material */
 /* (omega dt)^2 of springs alone on the nodes: a full cell beside a wall has 0.64 with a Courant number of 0.8, and 4 is

@@ -1,6 +1,6 @@
 /* Which material may meet a wall in this step, and the nodes that carry it there. */
 #include "material/law.h"
-#include "solve/contact/spring.h"
+#include "solve/contact/contact.h"
 
 #define BENDING 27     /* most nodes of a point whose functions bend */
 #define TOUCHES 1e-6   /* of a cell: within this what had no force at the start of the step touches */

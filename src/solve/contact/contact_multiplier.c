@@ -71,8 +71,8 @@ static PetscReal stiffness_of(const ContactPoint *c, PetscReal h, PetscReal iner
   return other > 0 ? k * other / (k + other) : k;
 }
 
-/* A chord of what turns leads inwards, where forces of the end would do work that no torque does; those of the middle, or
- * the mean of both ends that statics have, do what the torque does along the chord. */
+/* A chord of what turns leads inwards, where forces of the end would do work that no torque does; those of the middle,
+ * or the mean of both ends that statics have, do what the torque does along the chord. */
 static void sweep(const Contact *s, ContactPoint *c, PetscReal t, PetscReal dt)
 {
   PetscReal x[3];
