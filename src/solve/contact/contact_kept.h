@@ -38,7 +38,7 @@ static inline void contact_keep_normal(PetscReal *kept, PetscInt dim, PetscInt s
   for (PetscInt d = 0; d < dim && sides > 1; ++d) kept[KEPT_NORMAL(dim) + d] = n[d];
 }
 
-/* Is added to the state where a spring held it, in explicit dynamics: what is pressed stands deeper than the surface. */
+/* Is added to the state where a spring held it (explicit dynamics): what is pressed stands deeper than the surface. */
 #define CONTACT_SPRING 0.25
 
 static inline PetscBool contact_is_sprung(PetscReal state)
