@@ -6,19 +6,17 @@
 static void add_rims(const GridBox *box, const unsigned char *member, unsigned char *rim)
 {
   const VoxelBlock *known = &box->nodes;
-  PetscInt at[3];
-  for (at[2] = known->lo[2]; at[2] < known->hi[2]; ++at[2])
-    for (at[1] = known->lo[1]; at[1] < known->hi[1]; ++at[1])
-      for (at[0] = known->lo[0]; at[0] < known->hi[0]; ++at[0]) {
-        const PetscInt node = box_node(box, at);
-        for (PetscInt d = 0; member[node] && d < box->dim; ++d)
-          for (int side = -1; side <= 1; side += 2) {
-            PetscInt beside[3] = {at[0], at[1], at[2]};
-            beside[d] += side;
-            if (beside[d] < known->lo[d] || beside[d] >= known->hi[d] || member[box_node(box, beside)]) continue;
-            rim[node] |= (unsigned char)(1 << d);
-          }
+  PetscInt at[LATTICE];
+  for (PetscBool more = block_first(known, at); more; more = block_next(known, at)) {
+    const PetscInt node = box_node(box, at);
+    for (PetscInt d = 0; member[node] && d < box->dim; ++d)
+      for (int side = -1; side <= 1; side += 2) {
+        PetscInt beside[LATTICE] = {at[0], at[1], at[2], at[3]};
+        beside[d] += side;
+        if (!block_has(known, beside) || member[box_node(box, beside)]) continue;
+        rim[node] |= (unsigned char)(1 << d);
       }
+  }
 }
 
 PetscErrorCode BoundaryRims(const Boundary *b, const Grid *grid, unsigned char *rim)

@@ -113,7 +113,7 @@ static void halve(Points *points, PetscInt p, PetscInt side, PetscInt k, const P
 
 static void cell_size(const Grid *grid, PetscInt cell, PetscReal *size)
 {
-  PetscInt ijk[3];
+  PetscInt ijk[LATTICE];
   box_voxel_of(grid, cell, ijk);
   box_voxel_size(grid->box, ijk, size);
 }

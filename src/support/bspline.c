@@ -17,7 +17,7 @@
 #define ON_KNOT 1e-10
 
 /* Do splines end along axis d at the node with these voxel lines? */
-static PetscBool ends_here(const BasisInput *in, const PetscInt at[3], PetscInt d)
+static PetscBool ends_here(const BasisInput *in, const PetscInt at[LATTICE], PetscInt d)
 {
   const GridBox *box = in->grid->box;
   if (at[d] == 0 || at[d] == box->counts[d]) return PETSC_TRUE;
@@ -43,7 +43,7 @@ static void axis_functions(const BasisInput *in, const Points *points, PetscInt 
   const GridBox *box = in->grid->box;
   const PetscReal *x = point_real(points, POINT_X, p);
   PetscReal l[3] = {0};
-  PetscInt at[3] = {0, 0, box->dim == 2 ? place->ijk[2] : 0};
+  PetscInt at[LATTICE] = {0, 0, 0, place->ijk[LATTICE - 1]};
   for (PetscInt d = 0; d < box->dim; ++d)
     at[d] = nearest_line(box->line[d], place->ijk[d], x[d] - ON_KNOT * place->size[d]);
   if (in->hoop) product_domain(points, p, place->size, l);

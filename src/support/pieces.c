@@ -142,7 +142,7 @@ static PetscInt add_piece(const GridBox *box, const ProductPlace *place, const P
   PetscInt n = 0, all = 1, at[3] = {0, 0, 0};
   for (PetscInt d = 0; d < p->dim; ++d) all *= p->axis[d].n;
   for (PetscInt q = 0; q < all; ++q) {
-    PetscInt ijk[3] = {0, 0, p->dim == 2 ? place->ijk[2] : 0}, k = n;
+    PetscInt ijk[LATTICE] = {0, 0, 0, place->ijk[LATTICE - 1]}, k = n;
     PetscReal here, slopes[4];
     for (PetscInt d = 0; d < p->dim; ++d) ijk[d] = p->axis[d].first + at[d];
     if (see(p, at, &here, slopes)) {

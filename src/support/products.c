@@ -57,7 +57,7 @@ UNROLLED PetscInt functions_of(const PetscInt dim, const GridBox *box, const Pro
   lean(radius, f, leaning);
   for (PetscInt d = 0; d < dim; ++d) n *= f[d].n;
   for (PetscInt q = 0; q < n; ++q) {
-    PetscInt ijk[3] = {0, 0, dim == 2 ? place->ijk[2] : 0};
+    PetscInt ijk[LATTICE] = {0, 0, 0, place->ijk[LATTICE - 1]};
     PetscReal product = 1, gradient[3];
     for (PetscInt d = 0; d < dim; ++d) {
       ijk[d] = f[d].first + at[d];
@@ -113,23 +113,23 @@ void products_end(Support *s, PetscInt n_groups, PetscInt n)
 }
 
 /* The nodes around one, itself among them; of the sides of the box there are fewer. */
-static PetscInt nodes_around(const GridBox *box, const PetscInt at[3], PetscInt *node)
+static PetscInt nodes_around(const GridBox *box, const PetscInt at[LATTICE], PetscInt *node)
 {
-  PetscInt n = 0, lo[3] = {at[0], at[1], at[2]}, hi[3] = {at[0], at[1], at[2]}, ijk[3];
-  for (PetscInt d = 0; d < box->dim; ++d) {
-    lo[d] = PetscMax(at[d] - 1, 0);
-    hi[d] = PetscMin(at[d] + 1, box->counts[d]);
+  VoxelBlock around;
+  PetscInt n = 0, ijk[LATTICE];
+  for (int d = 0; d < LATTICE; ++d) {
+    around.lo[d] = d < box->dim ? PetscMax(at[d] - 1, 0) : at[d];
+    around.hi[d] = 1 + (d < box->dim ? PetscMin(at[d] + 1, box->counts[d]) : at[d]);
   }
-  for (ijk[2] = lo[2]; ijk[2] <= hi[2]; ++ijk[2])
-    for (ijk[1] = lo[1]; ijk[1] <= hi[1]; ++ijk[1])
-      for (ijk[0] = lo[0]; ijk[0] <= hi[0]; ++ijk[0]) node[n++] = box_node(box, ijk);
+  for (PetscBool more = block_first(&around, ijk); more; more = block_next(&around, ijk))
+    node[n++] = box_node(box, ijk);
   return n;
 }
 
 PetscErrorCode ProductsCouplings(const BasisInput *in, const BasisSites *sites, NodeGroups *groups)
 {
   const GridBox *box = in->grid->box;
-  PetscInt node[PRODUCT_MOST_NODES], at[3], cell[3];
+  PetscInt node[PRODUCT_MOST_NODES], at[LATTICE], cell[LATTICE];
   PetscBT done;
 
   PetscFunctionBeginUser;
@@ -138,7 +138,7 @@ PetscErrorCode ProductsCouplings(const BasisInput *in, const BasisSites *sites, 
     if (!sites->cell[c]) continue;
     box_voxel_of(in->grid, c, cell);
     for (PetscInt corner = 0; corner < 1 << box->dim; ++corner) {
-      for (PetscInt d = 0; d < 3; ++d) at[d] = cell[d] + (d < box->dim ? corner >> d & 1 : 0);
+      for (PetscInt d = 0; d < LATTICE; ++d) at[d] = cell[d] + (d < box->dim ? corner >> d & 1 : 0);
       if (!PetscBTLookupSet(done, box_node(box, at)))
         PetscCall(NodeGroupsAdd(groups, nodes_around(box, at, node), node));
     }

@@ -13,9 +13,9 @@ typedef struct {
   PetscReal N[3], dN[3], moment[3], lean[3];
 } LineFunctions;
 
-/* Where a point is: the voxel of its cell (in the plane ijk[2] is its field), and the cell's lengths. */
+/* Where a point is: the voxel of its cell, and the cell's lengths. */
 typedef struct {
-  PetscInt ijk[3];
+  PetscInt ijk[LATTICE];
   PetscReal size[3];
 } ProductPlace;
 

@@ -16,7 +16,7 @@ typedef struct {
 
 /* A box grid knows every rank's block, so that owners and global numbers need no messages. */
 struct GridBox {
-  PetscInt dim, counts[3]; /* in the plane counts[2] is the number of fields: layers that share no node */
+  PetscInt dim, counts[LATTICE];
   PetscReal *line[3];      /* counts + 1 coordinates along each axis */
   PetscReal per_length[3]; /* voxels per metre; 0 where the axis is graded */
   PetscReal tolerance;     /* how far outside a position still belongs, m */
@@ -32,15 +32,15 @@ struct GridBox {
 };
 
 /* The pattern of a voxel, chequered in each field alike. */
-static inline const VoxelPattern *box_pattern(const GridBox *box, const PetscInt ijk[3])
+static inline const VoxelPattern *box_pattern(const GridBox *box, const PetscInt ijk[LATTICE])
 {
-  return box->pattern + ((ijk[0] + ijk[1] + (box->dim == 3 ? ijk[2] : 0)) & 1);
+  return box->pattern + ((ijk[0] + ijk[1] + ijk[2]) & 1);
 }
 
 /* All voxels. */
 static inline VoxelBlock box_voxels(const GridBox *box)
 {
-  return (VoxelBlock){{0, 0, 0}, {box->counts[0], box->counts[1], box->counts[2]}};
+  return (VoxelBlock){{0}, {box->counts[0], box->counts[1], box->counts[2], box->counts[3]}};
 }
 
 /* box_blocks.c */
@@ -63,17 +63,17 @@ PetscInt box_locate(const Grid *grid, const PetscReal *x, PetscInt guess, PetscR
 void box_clamp(const Grid *grid, PetscReal *x);
 PetscInt box_candidates(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks);
 /* The rank that owns a voxel. */
-PetscMPIInt box_owner(const GridBox *box, const PetscInt ijk[3]);
+PetscMPIInt box_owner(const GridBox *box, const PetscInt ijk[LATTICE]);
 
 /* The voxel of a local cell, from 0 along each axis, and the local number of a lattice node that
  * this rank knows. */
-void box_voxel_of(const Grid *grid, PetscInt cell, PetscInt ijk[3]);
-static inline PetscInt box_node(const GridBox *box, const PetscInt ijk[3])
+void box_voxel_of(const Grid *grid, PetscInt cell, PetscInt ijk[LATTICE]);
+static inline PetscInt box_node(const GridBox *box, const PetscInt ijk[LATTICE])
 {
   return box->lattice[block_index(&box->nodes, ijk)];
 }
 /* The sides of a voxel, m. */
-static inline void box_voxel_size(const GridBox *box, const PetscInt ijk[3], PetscReal *size)
+static inline void box_voxel_size(const GridBox *box, const PetscInt ijk[LATTICE], PetscReal *size)
 {
   for (PetscInt d = 0; d < box->dim; ++d) size[d] = box->line[d][ijk[d] + 1] - box->line[d][ijk[d]];
 }

@@ -21,12 +21,10 @@ VoxelBlock box_owned_nodes(const GridBox *box, const VoxelBlock *voxels)
   return nodes;
 }
 
-void box_voxel_of(const Grid *grid, PetscInt cell, PetscInt ijk[3])
+void box_voxel_of(const Grid *grid, PetscInt cell, PetscInt ijk[LATTICE])
 {
-  const PetscInt *counts = grid->box->counts, voxel = grid->global_cell[cell] / grid->box->pattern[0].n_cells;
-  ijk[0] = voxel % counts[0];
-  ijk[1] = voxel / counts[0] % counts[1];
-  ijk[2] = voxel / counts[0] / counts[1];
+  const VoxelBlock all = box_voxels(grid->box);
+  block_at(&all, grid->global_cell[cell] / grid->box->pattern[0].n_cells, ijk);
 }
 
 PetscBool box_has_centres(const GridBox *box) { return box->pattern[0].code[0][2] == VOXEL_CENTRE; }
@@ -49,11 +47,12 @@ static PetscErrorCode Lines(GridBox *box, const GridSpec *spec, PetscInt n_field
 {
   PetscFunctionBeginUser;
   box->tolerance = 0;
+  box->counts[LATTICE - 1] = n_fields;
   for (PetscInt d = 0; d < 3; ++d) {
     const PetscBool real = d < box->dim;
     const PetscReal min = real ? spec->min[d] : 0, max = real ? spec->max[d] : 1;
     const PetscReal grading = real && spec->grading[d] > 0 ? spec->grading[d] : 1.0;
-    box->counts[d] = real ? spec->counts[d] : n_fields;
+    box->counts[d] = real ? spec->counts[d] : 1;
     PetscCall(PetscMalloc1(box->counts[d] + 1, &box->line[d]));
     fill_line(min, max, box->counts[d], grading, box->line[d]);
     if (grading == 1.0) box->per_length[d] = (PetscReal)box->counts[d] / (max - min);

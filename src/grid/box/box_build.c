@@ -14,11 +14,11 @@ const char *box_side_name(PetscInt axis, int high)
 }
 
 /* The rank and the local number there of a lattice node. */
-static PetscSFNode lattice_owner(const GridBox *box, const PetscInt ijk[3])
+static PetscSFNode lattice_owner(const GridBox *box, const PetscInt ijk[LATTICE])
 {
-  PetscInt voxel[3];
+  PetscInt voxel[LATTICE];
   PetscSFNode node;
-  for (int d = 0; d < 3; ++d) voxel[d] = PetscMin(ijk[d], box->counts[d] - 1);
+  for (int d = 0; d < LATTICE; ++d) voxel[d] = PetscMin(ijk[d], box->counts[d] - 1);
   node.rank = box_owner(box, voxel);
   const VoxelBlock owned = box_owned_nodes(box, box->block + node.rank);
   node.index = block_index(&owned, ijk);
@@ -45,34 +45,32 @@ static PetscErrorCode PlaceLattice(Grid *grid, const VoxelBlock *nodes, PetscInt
 {
   const GridBox *box = grid->box;
   const VoxelBlock owned = box_owned_nodes(box, box->block + box->rank);
-  PetscInt own = 0, ghost = 0, ijk[3], *leaf;
+  PetscInt own = 0, ghost = 0, ijk[LATTICE], *leaf;
   PetscSFNode *root;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(grid->n_nodes - grid->n_owned, &leaf));
   PetscCall(PetscMalloc1(grid->n_nodes - grid->n_owned, &root));
-  for (ijk[2] = nodes->lo[2]; ijk[2] < nodes->hi[2]; ++ijk[2])
-    for (ijk[1] = nodes->lo[1]; ijk[1] < nodes->hi[1]; ++ijk[1])
-      for (ijk[0] = nodes->lo[0]; ijk[0] < nodes->hi[0]; ++ijk[0]) {
-        const PetscBool mine = block_has(&owned, ijk);
-        const PetscInt node = mine ? own++ : grid->n_owned + ghost;
-        *lattice++ = node;
-        for (PetscInt d = 0; d < grid->dim; ++d) grid->x[node * grid->dim + d] = box->line[d][ijk[d]];
-        if (mine) {
-          grid->global_node[node] = box->first_node[box->rank] + node;
-          continue;
-        }
-        root[ghost] = lattice_owner(box, ijk);
-        leaf[ghost] = node;
-        grid->global_node[node] = box->first_node[root[ghost].rank] + root[ghost].index;
-        ++ghost;
-      }
+  for (PetscBool more = block_first(nodes, ijk); more; more = block_next(nodes, ijk)) {
+    const PetscBool mine = block_has(&owned, ijk);
+    const PetscInt node = mine ? own++ : grid->n_owned + ghost;
+    *lattice++ = node;
+    for (PetscInt d = 0; d < grid->dim; ++d) grid->x[node * grid->dim + d] = box->line[d][ijk[d]];
+    if (mine) {
+      grid->global_node[node] = box->first_node[box->rank] + node;
+      continue;
+    }
+    root[ghost] = lattice_owner(box, ijk);
+    leaf[ghost] = node;
+    grid->global_node[node] = box->first_node[root[ghost].rank] + root[ghost].index;
+    ++ghost;
+  }
   PetscCall(PetscSFCreate(grid->comm, &grid->node_sf));
   PetscCall(PetscSFSetGraph(grid->node_sf, grid->n_owned, ghost, leaf, PETSC_OWN_POINTER, root, PETSC_OWN_POINTER));
   PetscFunctionReturn(0);
 }
 
-static void place_centre(Grid *grid, const PetscInt ijk[3], PetscInt node)
+static void place_centre(Grid *grid, const PetscInt ijk[LATTICE], PetscInt node)
 {
   const GridBox *box = grid->box;
   grid->global_node[node] = box->first_node[box->rank] + node;
@@ -81,12 +79,12 @@ static void place_centre(Grid *grid, const PetscInt ijk[3], PetscInt node)
 }
 
 /* The local nodes of a voxel's corners, by their codes, and of its centre. */
-static void voxel_nodes(const Grid *grid, const VoxelBlock *nodes, const PetscInt *lattice, const PetscInt ijk[3],
+static void voxel_nodes(const Grid *grid, const VoxelBlock *nodes, const PetscInt *lattice, const PetscInt ijk[LATTICE],
                         PetscInt first_centre, PetscInt local[VOXEL_CENTRE + 1])
 {
   const GridBox *box = grid->box;
   for (PetscInt code = 0; code < 1 << grid->dim; ++code) {
-    const PetscInt corner[3] = {ijk[0] + (code & 1), ijk[1] + (code >> 1 & 1), ijk[2] + (code >> 2 & 1)};
+    const PetscInt corner[LATTICE] = {ijk[0] + (code & 1), ijk[1] + (code >> 1 & 1), ijk[2] + (code >> 2 & 1), ijk[3]};
     local[code] = lattice[block_index(nodes, corner)];
   }
   local[VOXEL_CENTRE] = first_centre + block_index(box->block + box->rank, ijk);
@@ -99,18 +97,16 @@ static void fill_cells(Grid *grid, const VoxelBlock *nodes, const PetscInt *latt
   const VoxelBlock all = box_voxels(box);
   const PetscInt nn = grid->nodes_per_cell, n_sub = box->pattern[0].n_cells;
   const PetscBool centres = box_has_centres(box);
-  PetscInt ijk[3], local[VOXEL_CENTRE + 1], cell = 0;
-  for (ijk[2] = voxels->lo[2]; ijk[2] < voxels->hi[2]; ++ijk[2])
-    for (ijk[1] = voxels->lo[1]; ijk[1] < voxels->hi[1]; ++ijk[1])
-      for (ijk[0] = voxels->lo[0]; ijk[0] < voxels->hi[0]; ++ijk[0]) {
-        const VoxelPattern *pattern = box_pattern(box, ijk);
-        voxel_nodes(grid, nodes, lattice, ijk, block_size(&owned), local);
-        if (centres) place_centre(grid, ijk, local[VOXEL_CENTRE]);
-        for (PetscInt s = 0; s < n_sub; ++s, ++cell) {
-          for (PetscInt i = 0; i < nn; ++i) grid->cell_node[cell * nn + i] = local[pattern->code[s][i]];
-          grid->global_cell[cell] = block_index(&all, ijk) * n_sub + s;
-        }
-      }
+  PetscInt ijk[LATTICE], local[VOXEL_CENTRE + 1], cell = 0;
+  for (PetscBool more = block_first(voxels, ijk); more; more = block_next(voxels, ijk)) {
+    const VoxelPattern *pattern = box_pattern(box, ijk);
+    voxel_nodes(grid, nodes, lattice, ijk, block_size(&owned), local);
+    if (centres) place_centre(grid, ijk, local[VOXEL_CENTRE]);
+    for (PetscInt s = 0; s < n_sub; ++s, ++cell) {
+      for (PetscInt i = 0; i < nn; ++i) grid->cell_node[cell * nn + i] = local[pattern->code[s][i]];
+      grid->global_cell[cell] = block_index(&all, ijk) * n_sub + s;
+    }
+  }
 }
 
 /* Does this face of a cell lie on the voxel's lower (0) or upper (1) side of the axis? */
@@ -123,7 +119,7 @@ static PetscBool face_on_side(const Cell *cell, const PetscInt *code, PetscInt f
   return PETSC_TRUE;
 }
 
-static void voxel_side_faces(const Grid *grid, const PetscInt ijk[3], PetscInt axis, PetscInt upper, GridSet *set)
+static void voxel_side_faces(const Grid *grid, const PetscInt ijk[LATTICE], PetscInt axis, PetscInt upper, GridSet *set)
 {
   const GridBox *box = grid->box;
   const Cell *cell = cells + grid->type;
@@ -151,14 +147,13 @@ static PetscErrorCode SideFaces(const Grid *grid, PetscInt axis, PetscInt upper,
   const GridBox *box = grid->box;
   const VoxelBlock slab = end_slab(box->block[box->rank], axis, upper ? box->counts[axis] - 1 : 0);
   const PetscInt most = 2 * block_size(&slab); /* a voxel's side has one face or two */
-  PetscInt ijk[3];
+  PetscInt ijk[LATTICE];
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(most, &set->face_cell));
   PetscCall(PetscMalloc1(most, &set->face_side));
-  for (ijk[2] = slab.lo[2]; ijk[2] < slab.hi[2]; ++ijk[2])
-    for (ijk[1] = slab.lo[1]; ijk[1] < slab.hi[1]; ++ijk[1])
-      for (ijk[0] = slab.lo[0]; ijk[0] < slab.hi[0]; ++ijk[0]) voxel_side_faces(grid, ijk, axis, upper, set);
+  for (PetscBool more = block_first(&slab, ijk); more; more = block_next(&slab, ijk))
+    voxel_side_faces(grid, ijk, axis, upper, set);
   PetscFunctionReturn(0);
 }
 
@@ -166,15 +161,13 @@ static PetscErrorCode SideNodes(const Grid *grid, const VoxelBlock *nodes, const
                                 PetscInt upper, GridSet *set)
 {
   const VoxelBlock slab = end_slab(*nodes, axis, upper ? grid->box->counts[axis] : 0);
-  PetscInt ijk[3];
+  PetscInt ijk[LATTICE];
 
   PetscFunctionBeginUser;
   if (!block_size(nodes) || !block_size(&slab)) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(block_size(&slab), &set->nodes));
-  for (ijk[2] = slab.lo[2]; ijk[2] < slab.hi[2]; ++ijk[2])
-    for (ijk[1] = slab.lo[1]; ijk[1] < slab.hi[1]; ++ijk[1])
-      for (ijk[0] = slab.lo[0]; ijk[0] < slab.hi[0]; ++ijk[0])
-        set->nodes[set->n_nodes++] = lattice[block_index(nodes, ijk)];
+  for (PetscBool more = block_first(&slab, ijk); more; more = block_next(&slab, ijk))
+    set->nodes[set->n_nodes++] = lattice[block_index(nodes, ijk)];
   PetscCall(PetscSortInt(set->n_nodes, set->nodes));
   PetscFunctionReturn(0);
 }
@@ -257,10 +250,11 @@ PetscErrorCode BoxBuild(MPI_Comm comm, const GridOps *ops, CellType type, GridBo
   grid->dim = box->dim;
   grid->type = grid->first_type = type;
   grid->nodes_per_cell = cells[type].nodes;
-  grid->n_fields = box->dim == 2 ? box->counts[2] : 1;
+  grid->n_fields = box->counts[LATTICE - 1];
   grid->ops = ops;
   grid->box = box;
-  grid->n_cells_global = box->pattern[0].n_cells * box->counts[0] * box->counts[1] * box->counts[2];
+  const VoxelBlock all = box_voxels(box);
+  grid->n_cells_global = box->pattern[0].n_cells * block_size(&all);
   box_extent(grid);
   PetscCall(FillBox(grid));
   PetscCall(GridFinish(grid));

@@ -14,7 +14,7 @@ static PetscBool box_valid(MPI_Comm comm, const Case *c, Diag *diag)
 {
   const GridSpec *spec = &c->grid;
   const PetscInt dim = kinematics_dim(c->kinematics);
-  PetscReal entities = 6.0; /* bounds cells, nodes and the entries of cell_node */
+  PetscReal entities = 6.0 * (PetscReal)case_fields(c); /* bounds cells, nodes and the entries of cell_node */
   if (cells[spec->cell].dim != dim) {
     GridError(comm, diag, "grid.cell", "a %s does not fit %s kinematics", cells[spec->cell].name,
               dim == 3 ? "three-dimensional" : "two-dimensional");

@@ -5,7 +5,7 @@
 /* The dimension is a constant where all points of a step are located. */
 #define UNROLLED static inline __attribute__((always_inline))
 
-PetscMPIInt box_owner(const GridBox *box, const PetscInt ijk[3])
+PetscMPIInt box_owner(const GridBox *box, const PetscInt ijk[LATTICE])
 {
   return voxel_owner(box->size, box->cut_axis, box->cut, ijk);
 }
@@ -33,9 +33,9 @@ UNROLLED PetscInt interval_of(const GridBox *box, PetscInt axis, PetscReal x)
 }
 
 /* The voxel that holds x; PETSC_FALSE outside the grid. */
-UNROLLED PetscBool box_voxel(const PetscInt dim, const GridBox *box, const PetscReal *x, PetscInt ijk[3])
+UNROLLED PetscBool box_voxel(const PetscInt dim, const GridBox *box, const PetscReal *x, PetscInt ijk[LATTICE])
 {
-  ijk[2] = 0;
+  ijk[2] = ijk[3] = 0;
   for (PetscInt d = 0; d < dim; ++d) {
     const PetscReal *line = box->line[d];
     /* Written so that NaN is outside. */
@@ -87,7 +87,7 @@ UNROLLED PetscInt locate(const PetscInt dim, const Grid *grid, const PetscReal *
 {
   const GridBox *box = grid->box;
   const VoxelBlock *block = box->block + box->rank;
-  PetscInt ijk[3];
+  PetscInt ijk[LATTICE];
   PetscReal s[3] = {0, 0, 0}; /* position in the unit voxel */
 
   if (!box_voxel(dim, box, x, ijk) || !block_has(block, ijk)) return -1;
@@ -133,7 +133,7 @@ void box_clamp(const Grid *grid, PetscReal *x)
 PetscInt box_candidates(const Grid *grid, const PetscReal *x, PetscInt max, PetscMPIInt *ranks)
 {
   const GridBox *box = grid->box;
-  PetscInt ijk[3], range[3][2] = {{0, 0}, {0, 0}, {0, 0}}, v[3], n = 0;
+  PetscInt ijk[LATTICE], range[3][2] = {{0, 0}, {0, 0}, {0, 0}}, v[LATTICE] = {0}, n = 0;
   if (!box_voxel(box->dim, box, x, ijk)) return 0;
   /* grid_locate takes the position on its owner, which therefore comes first. */
   const PetscMPIInt owner = box_owner(box, ijk);

@@ -5,16 +5,17 @@
 /* Each rank weighs its share of the voxels, and lists those that carry something. */
 static PetscErrorCode WeighShare(const GridBox *box, GridWeight weight, void *context, VoxelWeights *w)
 {
-  const PetscInt *counts = box->counts;
-  const PetscInt64 all = (PetscInt64)counts[0] * counts[1] * counts[2];
+  const VoxelBlock voxels = box_voxels(box);
+  const PetscInt64 all = block_size(&voxels);
   const PetscInt begin = (PetscInt)(all * box->rank / box->size), end = (PetscInt)(all * (box->rank + 1) / box->size);
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(end - begin, &w->voxel, end - begin, &w->weight));
   w->n = 0;
   for (PetscInt v = begin; v < end; ++v) {
-    const PetscInt ijk[3] = {v % counts[0], v / counts[0] % counts[1], v / counts[0] / counts[1]};
+    PetscInt ijk[LATTICE];
     PetscReal centre[3];
+    block_at(&voxels, v, ijk);
     for (PetscInt d = 0; d < box->dim; ++d) centre[d] = 0.5 * (box->line[d][ijk[d]] + box->line[d][ijk[d] + 1]);
     w->voxel[w->n] = v;
     w->weight[w->n] = whole_weight(weight(context, centre));
@@ -45,19 +46,17 @@ PetscErrorCode BoxWeighCells(const Grid *grid, const PetscReal *weight, VoxelWei
   const VoxelBlock *mine = box->block + box->rank;
   const VoxelBlock all = box_voxels(box);
   const PetscInt n = block_size(mine), n_sub = box->pattern[0].n_cells;
-  PetscInt ijk[3], voxel = 0;
+  PetscInt ijk[LATTICE], voxel = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(n, &w->voxel, n, &w->weight));
-  PetscCall(PetscArraycpy(w->counts, box->counts, 3));
-  for (ijk[2] = mine->lo[2]; ijk[2] < mine->hi[2]; ++ijk[2])
-    for (ijk[1] = mine->lo[1]; ijk[1] < mine->hi[1]; ++ijk[1])
-      for (ijk[0] = mine->lo[0]; ijk[0] < mine->hi[0]; ++ijk[0], ++voxel) {
-        w->weight[w->n] = 0;
-        for (PetscInt s = 0; s < n_sub; ++s) w->weight[w->n] += whole_weight(weight[voxel * n_sub + s]);
-        w->voxel[w->n] = block_index(&all, ijk);
-        w->n += w->weight[w->n] > 0;
-      }
+  PetscCall(PetscArraycpy(w->counts, box->counts, LATTICE));
+  for (PetscBool more = block_first(mine, ijk); more; more = block_next(mine, ijk), ++voxel) {
+    w->weight[w->n] = 0;
+    for (PetscInt s = 0; s < n_sub; ++s) w->weight[w->n] += whole_weight(weight[voxel * n_sub + s]);
+    w->voxel[w->n] = block_index(&all, ijk);
+    w->n += w->weight[w->n] > 0;
+  }
   PetscFunctionReturn(0);
 }
 

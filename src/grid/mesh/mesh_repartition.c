@@ -19,9 +19,10 @@ static PetscReal typical_size(const Grid *grid)
 }
 
 /* Intervals of the ruler over a mesh, which depend on the mesh alone. */
-static void mesh_ruler(const Grid *grid, PetscInt counts[3])
+static void mesh_ruler(const Grid *grid, PetscInt counts[LATTICE])
 {
   PetscReal size = typical_size(grid) / RULER, places = MOST_PLACES + 1;
+  counts[LATTICE - 1] = 1;
   for (; places > MOST_PLACES; size *= 1.1) {
     places = 1;
     for (PetscInt d = 0; d < 3; ++d) {
@@ -34,11 +35,11 @@ static void mesh_ruler(const Grid *grid, PetscInt counts[3])
 }
 
 /* Where the centre of a cell lies on the ruler. */
-static void read_ruler(const Grid *grid, const PetscInt counts[3], PetscInt cell, PetscInt ijk[3])
+static void read_ruler(const Grid *grid, const PetscInt counts[LATTICE], PetscInt cell, PetscInt ijk[LATTICE])
 {
   PetscReal centre[3];
   grid_cell_centre(grid, cell, centre);
-  ijk[2] = 0;
+  ijk[2] = ijk[3] = 0;
   for (PetscInt d = 0; d < grid->dim; ++d) {
     const PetscReal at = (centre[d] - grid->min[d]) / (grid->max[d] - grid->min[d]);
     ijk[d] = (PetscInt)PetscMin(PetscMax(at * (PetscReal)counts[d], 0), (PetscReal)(counts[d] - 1));
@@ -48,16 +49,16 @@ static void read_ruler(const Grid *grid, const PetscInt counts[3], PetscInt cell
 PetscErrorCode MeshWeighCells(const Grid *grid, const PetscReal *weight, VoxelWeights *w)
 {
   const PetscInt n = grid->n_cells;
-  VoxelBlock all = {{0, 0, 0}, {0, 0, 0}};
+  VoxelBlock all = {{0}, {0}};
 
   PetscFunctionBeginUser;
   mesh_ruler(grid, all.hi);
-  PetscCall(PetscArraycpy(w->counts, all.hi, 3));
+  PetscCall(PetscArraycpy(w->counts, all.hi, LATTICE));
   w->n = n;
   w->layer = RULER;
   PetscCall(PetscMalloc2(n, &w->voxel, n, &w->weight));
   for (PetscInt c = 0; c < n; ++c) {
-    PetscInt ijk[3];
+    PetscInt ijk[LATTICE];
     read_ruler(grid, all.hi, c, ijk);
     w->voxel[c] = block_index(&all, ijk);
     w->weight[c] = whole_weight(weight[c]);
@@ -67,7 +68,7 @@ PetscErrorCode MeshWeighCells(const Grid *grid, const PetscReal *weight, VoxelWe
 
 PetscErrorCode MeshFromCuts(const Grid *old, const PetscInt *cut_axis, const PetscInt *cut, Grid **grid)
 {
-  PetscInt counts[3];
+  PetscInt counts[LATTICE];
   PetscMPIInt size, *owner;
 
   PetscFunctionBeginUser;
@@ -75,7 +76,7 @@ PetscErrorCode MeshFromCuts(const Grid *old, const PetscInt *cut_axis, const Pet
   mesh_ruler(old, counts);
   PetscCall(PetscMalloc1(old->n_cells, &owner));
   for (PetscInt c = 0; c < old->n_cells; ++c) {
-    PetscInt ijk[3];
+    PetscInt ijk[LATTICE];
     read_ruler(old, counts, c, ijk);
     owner[c] = voxel_owner(size, cut_axis, cut, ijk);
   }

@@ -24,27 +24,28 @@ typedef struct {
 
 /* The voxels whose weights this rank knows, and what all others weigh. */
 typedef struct {
-  PetscInt dim, counts[3];
+  PetscInt dim;
+  VoxelBlock all;
   const VoxelWeights *weights; /* NULL: all voxels weigh the same */
   PetscInt layer;              /* layers of voxels on either side that a cut goes through */
   PetscInt64 empty;
   PetscInt *part; /* of each of these voxels: index into the current level */
 } Share;
 
-static inline void voxel_at(const PetscInt counts[3], PetscInt v, PetscInt ijk[3])
+static VoxelBlock block_of(const PetscInt counts[LATTICE])
 {
-  ijk[0] = v % counts[0];
-  ijk[1] = v / counts[0] % counts[1];
-  ijk[2] = v / counts[0] / counts[1];
+  VoxelBlock all = {{0}, {0}};
+  for (int d = 0; d < LATTICE; ++d) all.hi[d] = counts[d];
+  return all;
 }
 
-static PetscErrorCode ShareCreate(MPI_Comm comm, PetscInt dim, const PetscInt counts[3], const VoxelWeights *weights,
-                                  Share *share)
+static PetscErrorCode ShareCreate(MPI_Comm comm, PetscInt dim, const PetscInt counts[LATTICE],
+                                  const VoxelWeights *weights, Share *share)
 {
   PetscInt64 sums[2] = {0, 0}, total[2];
 
   PetscFunctionBeginUser;
-  *share = (Share){.dim = dim, .counts = {counts[0], counts[1], counts[2]}, .layer = 1, .empty = 1};
+  *share = (Share){.dim = dim, .all = block_of(counts), .layer = 1, .empty = 1};
   if (!weights) PetscFunctionReturn(0);
   for (PetscInt v = 0; v < weights->n; ++v) {
     sums[0] += weights->weight[v];
@@ -106,9 +107,9 @@ static PetscErrorCode FillHistograms(MPI_Comm comm, const Share *share, PetscInt
   PetscCall(PetscArrayzero(histogram, n));
   for (PetscInt v = 0; w && v < w->n; ++v) {
     const Part *part = parts + share->part[v];
-    PetscInt ijk[3];
+    PetscInt ijk[LATTICE];
     if (!part_divides(part)) continue;
-    voxel_at(share->counts, w->voxel[v], ijk);
+    block_at(&share->all, w->voxel[v], ijk);
     for (PetscInt d = 0; d < share->dim; ++d)
       histogram[part->start[d] + ijk[d] - part->block.lo[d]] += w->weight[v] + each;
   }
@@ -184,8 +185,8 @@ static PetscErrorCode CutLevel(MPI_Comm comm, Share *share, PetscInt n_parts, Pa
   }
   for (PetscInt v = 0; share->weights && v < share->weights->n; ++v) {
     const Part *part = parts + share->part[v];
-    PetscInt ijk[3];
-    voxel_at(share->counts, share->weights->voxel[v], ijk);
+    PetscInt ijk[LATTICE];
+    block_at(&share->all, share->weights->voxel[v], ijk);
     share->part[v] = 2 * share->part[v] + (part_divides(part) && ijk[part->axis] >= part->cut);
   }
   PetscCall(PetscFree(histogram));
@@ -213,7 +214,7 @@ static PetscErrorCode Imbalance(MPI_Comm comm, PetscMPIInt size, const Share *sh
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt counts[3], const VoxelWeights *weights,
+PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt counts[LATTICE], const VoxelWeights *weights,
                                PetscInt *cut_axis, PetscInt *cut, PetscReal *imbalance)
 {
   PetscMPIInt size;
@@ -226,7 +227,7 @@ PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt count
   PetscCall(ShareCreate(comm, dim, counts, size > 1 ? weights : NULL, &share));
   PetscCall(PetscCalloc2(2 * size, &parts, 2 * size, &next));
   parts[0].last = size;
-  for (int d = 0; d < 3; ++d) parts[0].block.hi[d] = counts[d];
+  parts[0].block = block_of(counts);
   while (n_parts < size) {
     PetscCall(CutLevel(comm, &share, n_parts, parts, cut_axis, cut));
     for (PetscInt p = 0; p < n_parts; ++p) divide(parts + p, next + 2 * p);
@@ -239,7 +240,7 @@ PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt count
   PetscFunctionReturn(0);
 }
 
-PetscMPIInt voxel_owner(PetscMPIInt size, const PetscInt *cut_axis, const PetscInt *cut, const PetscInt ijk[3])
+PetscMPIInt voxel_owner(PetscMPIInt size, const PetscInt *cut_axis, const PetscInt *cut, const PetscInt ijk[LATTICE])
 {
   PetscMPIInt first = 0, last = size;
   while (last - first > 1) {
@@ -250,7 +251,7 @@ PetscMPIInt voxel_owner(PetscMPIInt size, const PetscInt *cut_axis, const PetscI
   return first;
 }
 
-PetscErrorCode PartitionBlocks(PetscMPIInt size, const PetscInt counts[3], const PetscInt *cut_axis,
+PetscErrorCode PartitionBlocks(PetscMPIInt size, const PetscInt counts[LATTICE], const PetscInt *cut_axis,
                                const PetscInt *cut, VoxelBlock *block)
 {
   PetscInt n_parts = 1;
@@ -259,7 +260,7 @@ PetscErrorCode PartitionBlocks(PetscMPIInt size, const PetscInt counts[3], const
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(2 * size, &parts, 2 * size, &next));
   parts[0].last = size;
-  for (int d = 0; d < 3; ++d) parts[0].block.hi[d] = counts[d];
+  parts[0].block = block_of(counts);
   while (n_parts < size) {
     for (PetscInt p = 0; p < n_parts; ++p) {
       parts[p].axis = cut_axis[middle_rank(parts + p)];

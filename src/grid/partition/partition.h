@@ -2,27 +2,59 @@
 #pragma once
 #include <petscsys.h>
 
+/* Axes of a lattice: those of space and, last, the velocity fields, in each of which all of it stands. Nothing is cut
+ * along these. */
+#define LATTICE 4
+
 /* A block of voxels (or lattice nodes): lo <= index < hi along each axis. Axes beyond the dimension
  * are 0 .. 1. */
 typedef struct {
-  PetscInt lo[3], hi[3];
+  PetscInt lo[LATTICE], hi[LATTICE];
 } VoxelBlock;
 
 static inline PetscInt block_size(const VoxelBlock *b)
 {
-  return (b->hi[0] - b->lo[0]) * (b->hi[1] - b->lo[1]) * (b->hi[2] - b->lo[2]);
+  PetscInt size = 1;
+  for (int d = 0; d < LATTICE; ++d) size *= b->hi[d] - b->lo[d];
+  return size;
 }
 
 /* Lexicographic number of a member of the block, first axis fastest. */
-static inline PetscInt block_index(const VoxelBlock *b, const PetscInt ijk[3])
+static inline PetscInt block_index(const VoxelBlock *b, const PetscInt ijk[LATTICE])
 {
-  const PetscInt nx = b->hi[0] - b->lo[0], ny = b->hi[1] - b->lo[1];
-  return ((ijk[2] - b->lo[2]) * ny + ijk[1] - b->lo[1]) * nx + ijk[0] - b->lo[0];
+  PetscInt index = 0;
+  for (int d = LATTICE - 1; d >= 0; --d) index = index * (b->hi[d] - b->lo[d]) + ijk[d] - b->lo[d];
+  return index;
 }
 
-static inline PetscBool block_has(const VoxelBlock *b, const PetscInt ijk[3])
+/* Where the member with this number is. */
+static inline void block_at(const VoxelBlock *b, PetscInt index, PetscInt ijk[LATTICE])
 {
-  for (int d = 0; d < 3; ++d)
+  for (int d = 0; d < LATTICE; ++d) {
+    ijk[d] = b->lo[d] + index % (b->hi[d] - b->lo[d]);
+    index /= b->hi[d] - b->lo[d];
+  }
+}
+
+/* All members in the order of their numbers: for (more = block_first(b, ijk); more; more = block_next(b, ijk)). */
+static inline PetscBool block_first(const VoxelBlock *b, PetscInt ijk[LATTICE])
+{
+  for (int d = 0; d < LATTICE; ++d) ijk[d] = b->lo[d];
+  return (PetscBool)(block_size(b) > 0);
+}
+
+static inline PetscBool block_next(const VoxelBlock *b, PetscInt ijk[LATTICE])
+{
+  for (int d = 0; d < LATTICE; ++d) {
+    if (++ijk[d] < b->hi[d]) return PETSC_TRUE;
+    ijk[d] = b->lo[d];
+  }
+  return PETSC_FALSE;
+}
+
+static inline PetscBool block_has(const VoxelBlock *b, const PetscInt ijk[LATTICE])
+{
+  for (int d = 0; d < LATTICE; ++d)
     if (ijk[d] < b->lo[d] || ijk[d] >= b->hi[d]) return PETSC_FALSE;
   return PETSC_TRUE;
 }
@@ -31,7 +63,7 @@ static inline PetscBool block_has(const VoxelBlock *b, const PetscInt ijk[3])
  * one rank only. Where cells lie anywhere the lattice is a ruler for their centres, `layer` of its
  * intervals to a cell, and all cells are listed; of a lattice of cells layer is 0. */
 typedef struct {
-  PetscInt counts[3]; /* of the lattice */
+  PetscInt counts[LATTICE]; /* of the lattice */
   PetscInt n, *voxel;
   PetscInt64 *weight;
   PetscInt layer;
@@ -46,10 +78,10 @@ static inline PetscInt64 whole_weight(PetscReal weight)
 
 /* Fills the cuts (entries 1 .. size-1). weights: NULL where all weigh the same. imbalance: the
  * largest weight of a rank over the mean. Collective. */
-PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt counts[3], const VoxelWeights *weights,
+PetscErrorCode PartitionVoxels(MPI_Comm comm, PetscInt dim, const PetscInt counts[LATTICE], const VoxelWeights *weights,
                                PetscInt *cut_axis, PetscInt *cut, PetscReal *imbalance);
 /* The blocks of all ranks from the cuts. */
-PetscErrorCode PartitionBlocks(PetscMPIInt size, const PetscInt counts[3], const PetscInt *cut_axis,
+PetscErrorCode PartitionBlocks(PetscMPIInt size, const PetscInt counts[LATTICE], const PetscInt *cut_axis,
                                const PetscInt *cut, VoxelBlock *block);
 /* The rank of one voxel from the cuts. */
-PetscMPIInt voxel_owner(PetscMPIInt size, const PetscInt *cut_axis, const PetscInt *cut, const PetscInt ijk[3]);
+PetscMPIInt voxel_owner(PetscMPIInt size, const PetscInt *cut_axis, const PetscInt *cut, const PetscInt ijk[LATTICE]);

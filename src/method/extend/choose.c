@@ -39,7 +39,7 @@ static PetscInt leads_bit(PetscInt d, PetscBool above, PetscBool held)
 
 /* What `fill` is where half of a node's share of the cells is full. Mass says only how it is to that of the nodes
  * around: of these the fullest counts as full. */
-static PetscReal half_full(const Discretisation *s, const Extension *e, const PetscInt at[3])
+static PetscReal half_full(const Discretisation *s, const Extension *e, const PetscInt at[LATTICE])
 {
   PetscReal most = 0;
   PetscInt step[3];
@@ -56,7 +56,7 @@ static PetscReal leads_by_mass(const Discretisation *s)
   return s->grid->dim == 3 ? LEADS_BY_MASS_IN_SPACE : LEADS_BY_MASS;
 }
 
-static PetscReal find_leads(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[3])
+static PetscReal find_leads(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[LATTICE])
 {
   const PetscReal least = e->by_mass ? leads_by_mass(s) : PetscMax(LEADS, s->c->stabilisation.follow);
   const PetscReal enough = least * half_full(s, e, at);
@@ -73,7 +73,7 @@ static PetscReal find_leads(const Discretisation *s, const Extension *e, PetscIn
   return (PetscReal)bits;
 }
 
-static PetscBool is_led(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[3],
+static PetscBool is_led(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[LATTICE],
                         const PetscInt step[3])
 {
   const PetscInt next = node_beside(s->grid->box, at, step);
@@ -87,7 +87,7 @@ static PetscBool is_led(const Discretisation *s, const Extension *e, PetscInt no
 
 /* Does a node with so little follow, if others lead it? Where a load acts more is asked for: a node has to have
  * stiffness for what it bears, and that it has no material at all is no hindrance. */
-static PetscBool wants_lead(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[3])
+static PetscBool wants_lead(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[LATTICE])
 {
   const PetscReal least = s->c->stabilisation.follow;
   if (e->by_mass) return (PetscBool)(e->loaded[node] > 0 && e->fill[node] < leads_by_mass(s) * half_full(s, e, at));
@@ -95,7 +95,7 @@ static PetscBool wants_lead(const Discretisation *s, const Extension *e, PetscIn
   return (PetscBool)(e->fill[node] > 0 && e->fill[node] < least);
 }
 
-static PetscReal find_ways(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[3])
+static PetscReal find_ways(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[LATTICE])
 {
   const PetscInt dim = s->grid->dim;
   PetscInt bits = 0, step[3];
@@ -112,7 +112,7 @@ static PetscReal find_ways(const Discretisation *s, const Extension *e, PetscInt
 /* What `find` says of each node of a list (NULL: the first n) that this rank owns; others are told. */
 static PetscErrorCode Find(const Discretisation *s, const Extension *e, PetscInt n, const PetscInt *list,
                            PetscReal (*find)(const Discretisation *s, const Extension *e, PetscInt node,
-                                             const PetscInt at[3]),
+                                             const PetscInt at[LATTICE]),
                            PetscReal *value)
 {
   PetscFunctionBeginUser;

@@ -4,14 +4,12 @@
 #include "method/extend/row.h"
 #include "support/products.h"
 
-static void find_places(const GridBox *box, PetscInt (*place)[3])
+static void find_places(const GridBox *box, PetscInt (*place)[LATTICE])
 {
-  const PetscInt *lo = box->nodes.lo, *hi = box->nodes.hi, *node = box->lattice;
-  PetscInt at[3];
-  for (at[2] = lo[2]; at[2] < hi[2]; ++at[2])
-    for (at[1] = lo[1]; at[1] < hi[1]; ++at[1])
-      for (at[0] = lo[0]; at[0] < hi[0]; ++at[0], ++node)
-        for (int d = 0; d < 3; ++d) place[*node][d] = at[d];
+  const PetscInt *node = box->lattice;
+  PetscInt at[LATTICE];
+  for (PetscBool more = block_first(&box->nodes, at); more; more = block_next(&box->nodes, at), ++node)
+    for (int d = 0; d < LATTICE; ++d) place[*node][d] = at[d];
 }
 
 static PetscErrorCode ExtensionCreate(const Discretisation *s, Extension **extension)

@@ -1,6 +1,7 @@
 /* Nodes that domains of points all but miss follow those inside the body (docs/theory.md, "Nodes that follow"), in a
  * box whose points are groups of their own. */
 #pragma once
+#include "grid/partition/partition.h"
 #include "method/discretisation.h"
 
 /* Of nodes beside one: how many steps along each axis, downwards and upwards. */
@@ -14,16 +15,16 @@ typedef struct Extension {
    * be compared with the nodes around */
   PetscReal *fill;
   PetscBool by_mass;
-  PetscReal *loaded;      /* n_nodes: does a piece of a loaded surface see it? */
-  PetscReal *leads;       /* n_nodes: bits of leads_bit */
-  PetscReal *ways;        /* n_nodes: bits of the ways on which the node follows; 0: it does not */
-  PetscInt (*place)[3];   /* n_nodes: in the box */
-  Extent *extent;         /* n_nodes: of what has its place once followers are gone */
-  Support *spare;         /* the support as the basis left it, in the last step in which nodes followed */
-  Support *carried;       /* what carriers of loads see, where they push by the basis's functions, */
-  Support *spare_carried; /* and the same as the basis left it */
-  Support *traced;        /* what tracers see, of a basis whose functions are those of places; followers among it */
-  PetscBool any;          /* does a node follow, on any rank, so that points and carriers do not see it any more? */
+  PetscReal *loaded;          /* n_nodes: does a piece of a loaded surface see it? */
+  PetscReal *leads;           /* n_nodes: bits of leads_bit */
+  PetscReal *ways;            /* n_nodes: bits of the ways on which the node follows; 0: it does not */
+  PetscInt (*place)[LATTICE]; /* n_nodes: in the box */
+  Extent *extent;             /* n_nodes: of what has its place once followers are gone */
+  Support *spare;             /* the support as the basis left it, in the last step in which nodes followed */
+  Support *carried;           /* what carriers of loads see, where they push by the basis's functions, */
+  Support *spare_carried;     /* and the same as the basis left it */
+  Support *traced;            /* what tracers see, of a basis whose functions are those of places; followers among it */
+  PetscBool any;              /* does a node follow, on any rank, so that points and carriers do not see it any more? */
   PetscInt n_followers, *follower;     /* nodes with ways */
   PetscInt n_listed, *listed, *beside; /* by_mass: nodes that loads act on, and those around them */
 } Extension;

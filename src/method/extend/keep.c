@@ -17,9 +17,9 @@ PetscBool sees_follower(const Discretisation *s, const Support *w, PetscInt p)
 }
 
 /* As row_add_way has it: one step on the way, and one more along each of its axes. */
-static void add_extent(const GridBox *box, const PetscInt at[3], const PetscInt step[3], Extent *r)
+static void add_extent(const GridBox *box, const PetscInt at[LATTICE], const PetscInt step[3], Extent *r)
 {
-  const PetscInt base[3] = {at[0] + step[0], at[1] + step[1], at[2] + step[2]};
+  const PetscInt base[LATTICE] = {at[0] + step[0], at[1] + step[1], at[2] + step[2], at[3]};
   r->unknown |= node_beside(box, at, step) < 0;
   for (PetscInt d = 0; d < box->dim; ++d) {
     PetscInt along[3] = {0, 0, 0};
@@ -30,7 +30,7 @@ static void add_extent(const GridBox *box, const PetscInt at[3], const PetscInt 
   }
 }
 
-static Extent extent_of(const GridBox *box, const PetscInt at[3], PetscInt ways)
+static Extent extent_of(const GridBox *box, const PetscInt at[LATTICE], PetscInt ways)
 {
   Extent r = {.low = {2, 2, 2}, .high = {-2, -2, -2}};
   PetscInt step[3];
@@ -59,7 +59,7 @@ static PetscBool sees_near(const Discretisation *s, const Seen *seen, PetscInt p
 {
   const Extension *e = s->extension;
   const Support *w = seen->support;
-  PetscInt cell[3], low[3], high[3];
+  PetscInt cell[LATTICE], low[3], high[3];
   box_voxel_of(s->grid, seen->points->cell[p], cell);
   for (int d = 0; d < 3; ++d) low[d] = cell[d] + 2, high[d] = cell[d] - 1;
   for (PetscInt I = w->node_start[p]; I < w->node_start[p + 1]; ++I) {

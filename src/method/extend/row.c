@@ -14,9 +14,9 @@ PetscInt ways_many(PetscInt ways)
   return n;
 }
 
-PetscInt node_beside(const GridBox *box, const PetscInt at[3], const PetscInt step[3])
+PetscInt node_beside(const GridBox *box, const PetscInt at[LATTICE], const PetscInt step[3])
 {
-  const PetscInt there[3] = {at[0] + step[0], at[1] + step[1], at[2] + step[2]};
+  const PetscInt there[LATTICE] = {at[0] + step[0], at[1] + step[1], at[2] + step[2], at[3]};
   return block_has(&box->nodes, there) ? box_node(box, there) : -1;
 }
 
@@ -44,10 +44,10 @@ void row_add(Row *row, PetscInt slopes, PetscInt node, PetscReal share, PetscRea
 
 /* With B one step on the way, u = u_B + sum_d r_d (u_(B + d) - u_B) over the axes of the way: the linear function of
  * these nodes. */
-PetscBool row_add_way(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[3], const PetscInt step[3],
+PetscBool row_add_way(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[LATTICE], const PetscInt step[3],
                       PetscReal share, PetscReal N, const PetscReal *dN)
 {
-  const PetscInt base[3] = {at[0] + step[0], at[1] + step[1], at[2] + step[2]};
+  const PetscInt base[LATTICE] = {at[0] + step[0], at[1] + step[1], at[2] + step[2], at[3]};
   PetscReal rest = share;
   for (PetscInt d = 0; d < box->dim; ++d) {
     PetscInt along[3] = {0, 0, 0};
@@ -64,7 +64,7 @@ PetscBool row_add_way(Row *row, PetscInt slopes, const GridBox *box, const Petsc
   return PETSC_TRUE;
 }
 
-PetscBool row_add_follower(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[3], PetscInt ways,
+PetscBool row_add_follower(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[LATTICE], PetscInt ways,
                            PetscReal N, const PetscReal *dN)
 {
   const PetscInt n = ways_many(ways);

@@ -15,13 +15,13 @@ void way_of(PetscInt way, PetscInt step[3]);
 /* How many these bits are. */
 PetscInt ways_many(PetscInt ways);
 /* The local node one step from here, -1 if this rank knows none there. */
-PetscInt node_beside(const GridBox *box, const PetscInt at[3], const PetscInt step[3]);
+PetscInt node_beside(const GridBox *box, const PetscInt at[LATTICE], const PetscInt step[3]);
 /* share times N and dN (so many slopes) more of a node. */
 void row_add(Row *row, PetscInt slopes, PetscInt node, PetscReal share, PetscReal N, const PetscReal *dN);
 /* The same of what a node at this place follows on one way; PETSC_FALSE where this rank does not know all of it. */
-PetscBool row_add_way(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[3], const PetscInt step[3],
+PetscBool row_add_way(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[LATTICE], const PetscInt step[3],
                       PetscReal share, PetscReal N, const PetscReal *dN);
 /* The same of a node at this place that follows on these ways (bits), from all of them alike; PETSC_FALSE where this
  * rank does not know all nodes that it follows. */
-PetscBool row_add_follower(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[3], PetscInt ways,
+PetscBool row_add_follower(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[LATTICE], PetscInt ways,
                            PetscReal N, const PetscReal *dN);

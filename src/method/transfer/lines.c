@@ -29,15 +29,13 @@ static void find_beside(const GridBox *box, MassLines *lines)
 {
   const VoxelBlock *all = &box->nodes;
   const PetscInt *lo = all->lo, *hi = all->hi;
-  PetscInt at[3], n = 0;
-  for (at[2] = lo[2]; at[2] < hi[2]; ++at[2])
-    for (at[1] = lo[1]; at[1] < hi[1]; ++at[1])
-      for (at[0] = lo[0]; at[0] < hi[0]; ++at[0], ++n)
-        for (PetscInt d = 0, stride = 1; d < box->dim; stride *= hi[d] - lo[d], ++d) {
-          PetscInt *beside = lines->beside + 2 * (box->lattice[n] * box->dim + d);
-          beside[0] = box->lattice[at[d] > lo[d] ? n - stride : n];
-          beside[1] = box->lattice[at[d] + 1 < hi[d] ? n + stride : n];
-        }
+  PetscInt at[LATTICE], n = 0;
+  for (PetscBool more = block_first(all, at); more; more = block_next(all, at), ++n)
+    for (PetscInt d = 0, stride = 1; d < box->dim; stride *= hi[d] - lo[d], ++d) {
+      PetscInt *beside = lines->beside + 2 * (box->lattice[n] * box->dim + d);
+      beside[0] = box->lattice[at[d] > lo[d] ? n - stride : n];
+      beside[1] = box->lattice[at[d] + 1 < hi[d] ? n + stride : n];
+    }
 }
 
 PetscErrorCode MassLinesCreate(const Grid *grid, MassLines **lines)

@@ -126,15 +126,14 @@ static void mark_around(const Model *m, PetscInt cell, PetscReal *mark)
 {
   const GridBox *box = m->grid->box;
   const PetscInt around = 1 + m->space->basis->halo;
-  PetscInt ijk[3], lo[3] = {0, 0, 0}, hi[3] = {1, 1, 1};
+  VoxelBlock near = box->nodes;
+  PetscInt ijk[LATTICE];
   box_voxel_of(m->grid, cell, ijk);
   for (PetscInt d = 0; d < m->dim; ++d) {
-    lo[d] = PetscMax(ijk[d] - around, box->nodes.lo[d]);
-    hi[d] = PetscMin(ijk[d] + 2 + around, box->nodes.hi[d]);
+    near.lo[d] = PetscMax(ijk[d] - around, near.lo[d]);
+    near.hi[d] = PetscMin(ijk[d] + 2 + around, near.hi[d]);
   }
-  for (ijk[2] = lo[2]; ijk[2] < hi[2]; ++ijk[2])
-    for (ijk[1] = lo[1]; ijk[1] < hi[1]; ++ijk[1])
-      for (ijk[0] = lo[0]; ijk[0] < hi[0]; ++ijk[0]) mark[box_node(box, ijk)] = 1;
+  for (PetscBool more = block_first(&near, ijk); more; more = block_next(&near, ijk)) mark[box_node(box, ijk)] = 1;
 }
 
 /* And those that pieces of a loaded surface see. */

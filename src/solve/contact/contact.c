@@ -122,17 +122,20 @@ static PetscErrorCode Create(const NodalScene *scene, Diag *diag, void **data)
   PetscFunctionReturn(0);
 }
 
-/* The normal of contact at the end of the step: that of the wall, or of the surface of a body as it has turned. */
+/* The normal of contact at the end of the step: that of the wall, or of the surface of a body as it has turned, n less
+ * the slope of n . u along the surface. */
 static void normal_at_end(const Contact *s, const ContactPoint *c, const PetscReal *du, PetscReal n[3])
 {
-  PetscReal turned = 0;
+  PetscReal square = 0;
   for (int d = 0; d < 3; ++d) n[d] = c->normal[d];
   if (c->wall < s->n_walls) return;
-  for (PetscInt e = c->first; e < c->first + c->own; ++e)
-    for (PetscInt d = 0; d < s->dim; ++d) turned += s->turn[e] * c->normal[d] * du[s->node[e] * s->dim + d];
-  const PetscReal size = PetscSqrtReal(1 + turned * turned);
-  n[0] = (c->normal[0] + turned * c->normal[1]) / size;
-  n[1] = (c->normal[1] - turned * c->normal[0]) / size;
+  for (PetscInt e = c->first; e < c->first + c->own; ++e) {
+    PetscReal along = 0;
+    for (PetscInt d = 0; d < s->dim; ++d) along += c->normal[d] * du[s->node[e] * s->dim + d];
+    for (PetscInt d = 0; d < s->dim; ++d) n[d] -= s->turn[e * s->dim + d] * along;
+  }
+  for (int d = 0; d < 3; ++d) square += n[d] * n[d];
+  for (int d = 0; d < 3; ++d) n[d] /= PetscSqrtReal(square);
 }
 
 /* Distance of the material point from its surface at the end of the step, along the normal there: that of where both
@@ -142,7 +145,7 @@ static PetscReal reach_at_end(const Contact *s, const ContactPoint *c, const Nod
   const PetscReal first = scene->points->real[POINT_REACH][c->owner];
   PetscReal n[3], reach = c->ahead;
   normal_at_end(s, c, scene->du, n);
-  if (c->wall >= s->n_walls) reach *= n[0] * c->normal[0] + n[1] * c->normal[1];
+  if (c->wall >= s->n_walls) reach *= n[0] * c->normal[0] + n[1] * c->normal[1] + n[2] * c->normal[2];
   for (PetscInt e = c->first; e < c->first + c->own; ++e)
     for (PetscInt d = 0; d < s->dim; ++d) reach -= n[d] * s->lead[e] * scene->du[s->node[e] * s->dim + d];
   return PetscMax(THINNEST * first, PetscMin(contact_farthest(scene->points, c->owner), reach));

@@ -98,7 +98,7 @@ typedef struct Contact {
   WallAnchor *anchor;
   PetscReal *N;
   PetscReal *lead; /* what N is at the surface beyond what it is at the material point */
-  PetscReal *turn; /* of bodies in the plane: how N changes along the surface, (-n_y, n_x), 1/m */
+  PetscReal *turn; /* of bodies, dim of each: how N changes along the surface, 1/m */
   PetscInt n_slots, capacity_slots, *slot;
   PetscReal worst;  /* gap or slip when multipliers were last looked at, m */
   PetscReal near;   /* m: what is farther away cannot be reached in a step */

@@ -45,6 +45,14 @@ static PetscInt local_node(const NodeFinder *f, PetscInt number)
   return found ? found->node : -1;
 }
 
+/* What of a gradient is along the surface. */
+static void take_turn(PetscInt dim, const PetscReal *dN, const PetscReal n[3], PetscReal *turn)
+{
+  PetscReal across = 0;
+  for (PetscInt d = 0; d < dim; ++d) across += dN[d] * n[d];
+  for (PetscInt d = 0; d < dim; ++d) turn[d] = dN[d] - across * n[d];
+}
+
 /* Nodes of one body's point with their part of the place x, its field taken on from there. */
 static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, const SurfacePoint *p, PetscReal sign,
                             PetscInt first)
@@ -61,7 +69,7 @@ static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, co
     PetscCheck(s->node[e] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a body meets another one on an unknown node");
     s->N[e] = sign * (p->N[I] + change);
     s->lead[e] = sign * change;
-    s->turn[e] = p->dN[I * s->dim + 1] * c->normal[0] - p->dN[I * s->dim] * c->normal[1];
+    take_turn(s->dim, p->dN + I * s->dim, c->normal, s->turn + e * s->dim);
   }
   PetscFunctionReturn(0);
 }

@@ -89,7 +89,7 @@ PetscErrorCode ContactAddNodes(Contact *s, ContactPoint *c, PetscInt n)
     PetscCall(PetscRealloc((size_t)s->capacity_nodes * sizeof *s->node, &s->node));
     PetscCall(PetscRealloc((size_t)s->capacity_nodes * sizeof *s->N, &s->N));
     PetscCall(PetscRealloc((size_t)s->capacity_nodes * sizeof *s->lead, &s->lead));
-    PetscCall(PetscRealloc((size_t)s->capacity_nodes * sizeof *s->turn, &s->turn));
+    PetscCall(PetscRealloc((size_t)(s->capacity_nodes * s->dim) * sizeof *s->turn, &s->turn));
   }
   if (s->n_slots + n * n > s->capacity_slots) {
     s->capacity_slots += s->capacity_slots / 2 + n * n + 1024;

@@ -25,15 +25,14 @@ typedef struct {
 static Parents parents_of(const GridBox *box, PetscInt node)
 {
   const VoxelBlock owned = box_owned_nodes(box, box->block + box->rank);
-  const PetscInt nx = owned.hi[0] - owned.lo[0], ny = owned.hi[1] - owned.lo[1];
-  const Beside x = lines_beside(box, 0, owned.lo[0] + node % nx),
-               y = lines_beside(box, 1, owned.lo[1] + node / nx % ny),
-               z = lines_beside(box, 2, box->dim == 3 ? owned.lo[2] + node / nx / ny : 0);
   Parents p = {.n = 0};
+  PetscInt at[LATTICE];
+  block_at(&owned, node, at);
+  const Beside x = lines_beside(box, 0, at[0]), y = lines_beside(box, 1, at[1]), z = lines_beside(box, 2, at[2]);
   for (PetscInt k = 0; k < z.n; ++k)
     for (PetscInt j = 0; j < y.n; ++j)
       for (PetscInt i = 0; i < x.n; ++i, ++p.n) {
-        p.node[p.n] = box_node(box, (PetscInt[]){x.at[i], y.at[j], z.at[k]});
+        p.node[p.n] = box_node(box, (PetscInt[LATTICE]){x.at[i], y.at[j], z.at[k]});
         p.weight[p.n] = x.weight[i] * y.weight[j] * z.weight[k];
       }
   return p;
