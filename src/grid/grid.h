@@ -75,7 +75,8 @@ PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim,
  * *grid is then NULL. */
 PetscErrorCode GridCheckAxis(const Kinematics *kinematics, const char *path, Diag *diag, Grid **grid);
 /* Collective. The same grid, shared alike, in its place, where each rank knows so many layers of
- * nodes beyond those of its cells. A box on several ranks; others stay as they are. */
+ * nodes beyond those of its cells: of a box; of a mesh all nodes of the cells at its outer boundary, if
+ * any. On several ranks; clouds stay as they are. */
 PetscErrorCode GridWiden(Grid **grid, PetscInt layers);
 PetscErrorCode GridDestroy(Grid **grid);
 

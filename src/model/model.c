@@ -358,15 +358,17 @@ static PetscErrorCode CreateBodies(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-/* Layers of cells beyond a rank's own whose nodes it must know. */
+/* Layers of cells beyond a rank's own whose nodes it must know; of a mesh those at its boundary where bodies meet. */
 static PetscInt layers_beyond(const Model *m)
 {
   const Case *c = m->c;
   const PetscInt lap = c->analysis.type == ANALYSIS_EXPLICIT; /* points cross cells before they change ranks */
+  const PetscInt meets = c->n_interfaces ? CONTACT_HALO : 0;
   /* coarse nodes beside a node (solve/levels) */
   const PetscBool box = (PetscBool)(c->grid.kind == GRID_BOX && !m->method->clouds);
   const PetscInt levels = box && case_is_static(&c->analysis) && !m->formulation->pressure;
-  return PetscMax(basis_find(c->basis.kind)->halo, levels) + lap + (c->n_interfaces ? CONTACT_HALO : 0);
+  if (c->grid.kind != GRID_BOX) return meets;
+  return PetscMax(basis_find(c->basis.kind)->halo, levels) + lap + meets;
 }
 
 /* Everything after the parts that stand alone; each may find mistakes that make the next

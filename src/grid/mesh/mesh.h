@@ -10,6 +10,8 @@ struct GridMesh {
   /* numbers of the cells on other ranks, in the order in which neighbour names them */
   PetscInt *far_cell;
   PetscInt *file_node; /* n_nodes: place among the nodes in the file, whatever the ranks */
+  /* does each rank know all nodes of all cells at the outer boundary, where bodies meet? */
+  PetscBool knows_surface;
   BoxTree *cell_tree;  /* bounding boxes of the cells */
   BoxTree *face_tree;  /* and of the faces on the outer boundary, as grid->outer lists them */
   PetscReal tolerance; /* how far outside a cell a position still belongs, in reference units */
@@ -36,3 +38,5 @@ PetscErrorCode MeshFromPartition(const Grid *old, const Table *table, Grid **gri
 
 /* mesh_build.c. Collective. The same mesh with each local cell of `old` on the rank owner[cell]. */
 PetscErrorCode MeshFromOwners(const Grid *old, const PetscMPIInt *owner, Grid **grid);
+/* See GridOps. */
+PetscErrorCode MeshWiden(const Grid *old, PetscInt layers, Grid **grid);

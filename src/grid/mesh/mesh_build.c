@@ -141,6 +141,58 @@ static PetscErrorCode PlaceNodes(Grid *grid, const MeshPart *in, const Arrivals 
   PetscFunctionReturn(0);
 }
 
+static PetscBool is_outer(const Grid *grid, const MeshPart *in, PetscInt row, PetscInt cell)
+{
+  const PetscInt *beyond = in->cell + row * mesh_row(grid) + 1 + grid->nodes_per_cell;
+  for (PetscInt f = 0; f < grid_cell(grid, cell)->faces; ++f)
+    if (beyond[f] < 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Numbers in the file of the nodes of cells at the outer boundary, of all ranks. */
+static PetscErrorCode SurfaceNodes(const Grid *grid, const MeshPart *in, const PetscInt *order, PetscInt *n,
+                                   PetscInt **number)
+{
+  const PetscInt nn = grid->nodes_per_cell;
+  PetscMPIInt size, mine, *count, *start;
+  PetscInt *own, n_own = 0;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(grid->comm, &size));
+  PetscCall(PetscMalloc3(grid->n_cells * nn, &own, size, &count, size + 1, &start));
+  for (PetscInt c = 0; c < grid->n_cells; ++c)
+    for (PetscInt i = 0; i < nn && is_outer(grid, in, order[c], c); ++i)
+      own[n_own++] = grid->mesh->file_node[grid->cell_node[c * nn + i]];
+  PetscCall(PetscSortRemoveDupsInt(&n_own, own));
+  PetscCall(PetscMPIIntCast(n_own, &mine));
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, grid->comm));
+  start[0] = 0;
+  for (PetscMPIInt r = 0; r < size; ++r) start[r + 1] = start[r] + count[r];
+  *n = start[size];
+  PetscCall(PetscMalloc1(*n, number));
+  PetscCallMPI(MPI_Allgatherv(own, mine, MPIU_INT, *number, count, start, MPIU_INT, grid->comm));
+  PetscCall(PetscSortRemoveDupsInt(n, *number));
+  PetscCall(PetscFree3(own, count, start));
+  PetscFunctionReturn(0);
+}
+
+/* Bodies meet where other ranks have their cells: the nodes of those become ghosts without cells. */
+static PetscErrorCode KnowSurface(Grid *grid, const MeshPart *in, const PetscInt *order, const Arrivals *a)
+{
+  PetscInt n, *number, at;
+
+  PetscFunctionBeginUser;
+  PetscCall(SurfaceNodes(grid, in, order, &n, &number));
+  PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)(grid->n_nodes + n), &grid->mesh->file_node));
+  for (PetscInt i = 0; i < n; ++i) {
+    PetscCall(PetscFindInt(number[i], a->n, a->number, &at));
+    if (at < 0) grid->mesh->file_node[grid->n_nodes++] = number[i];
+  }
+  PetscCall(PetscRealloc(sizeof(PetscReal) * (size_t)(grid->n_nodes * grid->dim), &grid->x));
+  PetscCall(PetscFree(number));
+  PetscFunctionReturn(0);
+}
+
 /* Ties ghosts to their owners, and tells all how owners number them. */
 static PetscErrorCode TieNodes(Grid *grid)
 {
@@ -274,7 +326,7 @@ static PetscErrorCode SearchTrees(Grid *grid)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Build(Grid *grid, const MeshPart *in)
+static PetscErrorCode Build(Grid *grid, const MeshPart *in, PetscBool knows_surface)
 {
   PetscInt *order;
   Arrivals a;
@@ -286,7 +338,10 @@ static PetscErrorCode Build(Grid *grid, const MeshPart *in)
   PetscCall(ArrivalsCreate(grid, in, &a));
   PetscCall(NumberNodes(grid, in, order, &a));
   PetscCall(PlaceNodes(grid, in, &a));
+  grid->mesh->knows_surface = knows_surface;
+  if (knows_surface) PetscCall(KnowSurface(grid, in, order, &a));
   PetscCall(TieNodes(grid));
+  if (knows_surface) PetscCall(GridToGhosts(grid, grid->dim, grid->x));
   PetscCall(FindNeighbours(grid, in, order));
   PetscCall(FillSets(grid, in, &a));
   PetscCall(ArrivalsDestroy(&a));
@@ -296,14 +351,34 @@ static PetscErrorCode Build(Grid *grid, const MeshPart *in)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode MeshFromOwners(const Grid *old, const PetscMPIInt *owner, Grid **grid)
+static PetscErrorCode Remake(const Grid *old, const PetscMPIInt *owner, PetscBool knows_surface, Grid **grid)
 {
   MeshPart part;
 
   PetscFunctionBeginUser;
   PetscCall(MeshSend(old, owner, &part));
   PetscCall(GridLike(old, grid));
-  PetscCall(Build(*grid, &part));
+  PetscCall(Build(*grid, &part, knows_surface));
   PetscCall(MeshPartDestroy(&part));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MeshFromOwners(const Grid *old, const PetscMPIInt *owner, Grid **grid)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Remake(old, owner, old->mesh->knows_surface, grid));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MeshWiden(const Grid *old, PetscInt layers, Grid **grid)
+{
+  PetscMPIInt rank, *owner;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(old->comm, &rank));
+  PetscCall(PetscMalloc1(old->n_cells, &owner));
+  for (PetscInt c = 0; c < old->n_cells; ++c) owner[c] = rank;
+  PetscCall(Remake(old, owner, (PetscBool)(layers > 0), grid));
+  PetscCall(PetscFree(owner));
   PetscFunctionReturn(0);
 }

@@ -117,6 +117,7 @@ const GridOps grid_mesh = {
   .locate = mesh_locate,
   .clamp = mesh_clamp,
   .candidates = mesh_candidates,
+  .Widen = MeshWiden,
   .WeighCells = MeshWeighCells,
   .FromCuts = MeshFromCuts,
   .PartitionToTable = MeshPartitionToTable,

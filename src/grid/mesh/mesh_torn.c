@@ -54,7 +54,7 @@ static void tell(const Torn *torn, const char *path, Diag *diag)
                (long long)torn->pairs, torn->pairs == 1 ? "" : "s", torn->pairs == 1 ? "s" : "", at);
   diag_hint(diag,
             "surfaces that touch share their line: `Coherence;` in a .geo, or Gmsh's Remove duplicate nodes. A slit "
-            "that is meant is one");
+            "that is meant is one, and so is the line of bodies that meet at an interface");
 }
 
 PetscErrorCode FileMeshTellTorn(const FileMesh *mesh, const char *path, Diag *diag)

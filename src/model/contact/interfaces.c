@@ -9,8 +9,6 @@
 
 static void check_method(const Model *m, Diag *diag)
 {
-  PetscMPIInt size;
-  MPI_Comm_size(m->comm, &size);
   if (m->method->clouds)
     diag_error(diag, "interfaces", "method %s has one field for all bodies; mpm and fem let them meet at interfaces",
                m->method->name);
@@ -19,31 +17,54 @@ static void check_method(const Model *m, Diag *diag)
   if (m->method->restores_grid) {
     diag_error(diag, "interfaces", "a background mesh has one field for all bodies; a box has one for each");
     diag_hint(diag, "give grid.box; the bodies may have meshes of their own");
-  } else if (size > 1) diag_error(diag, "interfaces", "bodies of one mesh meet at interfaces on one rank only");
+  }
 }
 
-/* Bodies of one mesh have fields of their own where they share no node. */
-static PetscErrorCode CheckNodes(const Model *m, Diag *diag)
+/* Both bodies as one number, if they meet at an interface; else -1. */
+static PetscInt pair_of(const Case *c, PetscInt a, PetscInt b)
+{
+  PetscBool first;
+  if (a < 0 || b < 0 || a == b || case_interface(c, a, b, &first) < 0) return -1;
+  return a * c->n_bodies + b;
+}
+
+/* The last pair of bodies that have a node in common, on any rank; -1: none. */
+static PetscErrorCode SharingPair(const Model *m, PetscInt *pair)
 {
   const Grid *grid = m->grid;
   const PetscInt nn = grid->nodes_per_cell;
-  PetscInt *body;
-  PetscBool first;
+  PetscReal *here, *there; /* the body that has a node: on this rank, on its owner */
+  PetscInt found = -1;
 
   PetscFunctionBeginUser;
-  if (grid->n_fields > 1) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(grid->n_nodes, &body));
-  for (PetscInt i = 0; i < grid->n_nodes; ++i) body[i] = -1;
+  PetscCall(PetscMalloc2(grid->n_nodes, &here, grid->n_nodes, &there));
+  for (PetscInt i = 0; i < grid->n_nodes; ++i) here[i] = -1;
   for (PetscInt e = 0; e < m->points->n * nn; ++e) {
-    const PetscInt mine = m->points->body[e / nn], node = grid->cell_node[m->points->cell[e / nn] * nn + e % nn];
-    if (body[node] >= 0 && body[node] != mine && case_interface(m->c, mine, body[node], &first) >= 0) {
-      diag_error(diag, "interfaces", "'%s' and '%s' share nodes of the mesh: the line between them must be there twice",
-                 m->c->bodies[mine].name, m->c->bodies[body[node]].name);
-      break;
-    }
-    body[node] = mine;
+    PetscReal *body = here + grid->cell_node[m->points->cell[e / nn] * nn + e % nn];
+    found = PetscMax(found, pair_of(m->c, m->points->body[e / nn], (PetscInt)*body));
+    *body = (PetscReal)m->points->body[e / nn];
   }
-  PetscCall(PetscFree(body));
+  PetscCall(PetscArraycpy(there, here, grid->n_nodes));
+  PetscCall(GridToGhosts(grid, 1, there));
+  for (PetscInt i = grid->n_owned; i < grid->n_nodes; ++i)
+    found = PetscMax(found, pair_of(m->c, (PetscInt)here[i], (PetscInt)there[i]));
+  PetscCall(PetscFree2(here, there));
+  PetscCall(MPIU_Allreduce(&found, pair, 1, MPIU_INT, MPI_MAX, m->comm));
+  PetscFunctionReturn(0);
+}
+
+/* Bodies of one mesh have fields of their own where they share no node. */
+static PetscErrorCode CheckNodes(const Model *m, PetscMPIInt rank, Diag *diag)
+{
+  PetscInt pair;
+
+  PetscFunctionBeginUser;
+  if (m->grid->n_fields > 1) PetscFunctionReturn(0);
+  PetscCall(SharingPair(m, &pair));
+  if (pair < 0 || rank) PetscFunctionReturn(0);
+  diag_error(diag, "interfaces", "'%s' and '%s' share nodes of the mesh: the %s between them must be there twice",
+             m->c->bodies[pair / m->c->n_bodies].name, m->c->bodies[pair % m->c->n_bodies].name,
+             m->dim == 2 ? "line" : "surface");
   PetscFunctionReturn(0);
 }
 
@@ -144,7 +165,7 @@ PetscErrorCode InterfacesStart(Model *m, Diag *diag)
   if (!rank) check_pairs(m->c, diag);
   if (!rank) check_twice(m->c, diag);
   if (m->dim == 3 || m->method->clouds) PetscFunctionReturn(0);
-  PetscCall(CheckNodes(m, diag));
+  PetscCall(CheckNodes(m, rank, diag));
   PetscCall(PetscMalloc1(6 * m->c->n_bodies, &bounds));
   PetscCall(SurfaceBounds(&in, m->c->n_bodies, bounds));
   for (PetscInt k = 0; k < m->c->n_interfaces; ++k) PetscCall(FitInterface(m, &in, bounds, k, diag));
