@@ -15,12 +15,6 @@ typedef struct {
   Surface surface;
 } Body;
 
-static int compare(const void *a, const void *b)
-{
-  const SurfacePoint *p = a, *q = b;
-  return (p->x[0] > q->x[0]) - (p->x[0] < q->x[0]);
-}
-
 static void add(Body *b, PetscReal x, PetscReal y, PetscReal size)
 {
   SurfacePoint *p = b->point + b->surface.n++;
@@ -35,8 +29,9 @@ static void add(Body *b, PetscReal x, PetscReal y, PetscReal size)
 
 static void close_body(Body *b)
 {
+  b->surface.dim = 2;
   b->surface.point = b->point;
-  qsort(b->point, (size_t)b->surface.n, sizeof *b->point, compare);
+  assert_int_equal(SurfaceSort(&b->surface, 0.25), 0);
 }
 
 /* More points: along (c, s) from u0 to u1, from w0 to w1 across; turned about the origin. */

@@ -54,28 +54,29 @@ static void take_turn(PetscInt dim, const PetscReal *dN, const PetscReal n[3], P
 }
 
 /* Nodes of one body's point with their part of the place x, its field taken on from there. */
-static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, const SurfacePoint *p, PetscReal sign,
-                            PetscInt first)
+static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, const Surface *body,
+                            const SurfacePoint *p, PetscReal sign, PetscInt first)
 {
   PetscFunctionBeginUser;
   for (PetscInt I = 0; I < p->n; ++I) {
     const PetscInt e = c->first + first + I;
+    const SurfaceCarrier *carrier = body->carrier + p->carrier + I;
     PetscReal change = 0;
     for (PetscInt d = 0; d < s->dim; ++d) {
       const PetscReal way = c->x[d] - p->x[d];
-      change += (p->dN[I * s->dim + d] + 0.5 * p->bend[I * s->dim + d] * way) * way;
+      change += (carrier->dN[d] + 0.5 * carrier->bend[d] * way) * way;
     }
-    s->node[e] = local_node(f, p->node[I]);
+    s->node[e] = local_node(f, carrier->node);
     PetscCheck(s->node[e] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a body meets another one on an unknown node");
-    s->N[e] = sign * (p->N[I] + change);
+    s->N[e] = sign * (carrier->N + change);
     s->lead[e] = sign * change;
-    take_turn(s->dim, p->dN + I * s->dim, c->normal, s->turn + e * s->dim);
+    take_turn(s->dim, carrier->dN, c->normal, s->turn + e * s->dim);
   }
   PetscFunctionReturn(0);
 }
 
 static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder *f, PetscInt interface,
-                           const SurfacePoint *p, const SurfacePair *pair)
+                           const Surface body[2], const SurfacePoint *p, const SurfacePair *pair)
 {
   const PetscInt partner = s->n_walls + interface;
   const PetscReal *kept = contact_kept(scene->points, p->owner, partner, s->sides, 0);
@@ -102,8 +103,8 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
   if (kept[0] == 0) contact_start(scene, c);
   PetscCall(ContactAddNodes(s, c, p->n + pair->other->n));
   c->own = p->n;
-  PetscCall(Carry(s, c, f, p, 1, 0));
-  PetscCall(Carry(s, c, f, pair->other, -1, p->n));
+  PetscCall(Carry(s, c, f, body, p, 1, 0));
+  PetscCall(Carry(s, c, f, body + 1, pair->other, -1, p->n));
   PetscFunctionReturn(0);
 }
 
@@ -121,7 +122,7 @@ PetscErrorCode ContactFindBodies(Contact *s, const NodalScene *scene)
   NodeFinder finder;
   PetscReal *bounds;
   PetscMPIInt rank;
-  Surface first, second;
+  Surface body[2];
   SurfacePair pair;
 
   PetscFunctionBeginUser;
@@ -131,13 +132,12 @@ PetscErrorCode ContactFindBodies(Contact *s, const NodalScene *scene)
   PetscCall(FinderCreate(scene->grid, &finder));
   for (PetscInt k = 0; k < c->n_interfaces; ++k) {
     const PetscInt a = case_body(c, c->interfaces[k].between[0]), b = case_body(c, c->interfaces[k].between[1]);
-    PetscCall(SurfaceGather(&in, a, bounds + 6 * b, SURFACE_SEARCH * s->length, &first));
-    PetscCall(SurfaceGather(&in, b, bounds + 6 * a, SURFACE_SEARCH * s->length, &second));
-    for (const SurfacePoint *p = first.point; p < first.point + first.n; ++p)
-      if (p->rank == rank && surface_meet(&first, p, &second, s->length, &pair))
-        PetscCall(Meet(s, scene, &finder, k, p, &pair));
-    PetscCall(SurfaceClear(&first));
-    PetscCall(SurfaceClear(&second));
+    PetscCall(SurfaceGather(&in, a, bounds + 6 * b, SURFACE_SEARCH * s->length, body));
+    PetscCall(SurfaceGather(&in, b, bounds + 6 * a, SURFACE_SEARCH * s->length, body + 1));
+    for (const SurfacePoint *p = body[0].point; p < body[0].point + body[0].n; ++p)
+      if (p->rank == rank && surface_meet(body, p, body + 1, s->length, &pair))
+        PetscCall(Meet(s, scene, &finder, k, body, p, &pair));
+    for (int i = 0; i < 2; ++i) PetscCall(SurfaceClear(body + i));
   }
   PetscCall(PetscFree(finder.ghost));
   PetscCall(PetscFree(bounds));
