@@ -31,7 +31,7 @@ static void close_body(Body *b)
 {
   b->surface.dim = 2;
   b->surface.point = b->point;
-  assert_int_equal(SurfaceSort(&b->surface, 0.25), 0);
+  surface_sort(&b->surface);
 }
 
 /* More points: along (c, s) from u0 to u1, from w0 to w1 across; turned about the origin. */

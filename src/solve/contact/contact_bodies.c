@@ -60,7 +60,7 @@ static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, co
   PetscFunctionBeginUser;
   for (PetscInt I = 0; I < p->n; ++I) {
     const PetscInt e = c->first + first + I;
-    const SurfaceCarrier *carrier = body->carrier + p->carrier + I;
+    const SurfaceCarrier *carrier = body->carrier + p->first_carrier + I;
     PetscReal change = 0;
     for (PetscInt d = 0; d < s->dim; ++d) {
       const PetscReal way = c->x[d] - p->x[d];

@@ -7,38 +7,37 @@
 #define SURFACE_NODES 27 /* most that carry a point */
 #define SURFACE_SEARCH 4 /* cells around a body in which another one may be that it meets in a step */
 
-/* A node that carries a point, by its number in the whole grid, and what it has there. */
+/* A node that carries a point. */
 typedef struct {
-  PetscInt node;
-  PetscReal N, dN[3], bend[3]; /* Basis.bends; 0: not */
+  PetscInt node; /* its number in the whole grid */
+  PetscReal N, dN[3];
+  PetscReal bend[3]; /* Basis.bends; 0: not */
 } SurfaceCarrier;
 
-/* A material point as the other body sees it. */
+/* A material point as the other body sees it. In the plane x[2] and corner[2] are 0. */
 typedef struct {
   PetscInt64 id;
   PetscInt rank, owner; /* its rank, and its index there */
   PetscReal x[3], F[9];
   PetscReal first, corner[3]; /* POINT_REACH, POINT_CORNER, m */
   PetscReal reach;            /* what strain has made of the first on the whole, m */
-  PetscReal size;             /* side of a square or cube of its part, of the section in the plane, m */
+  PetscReal size;             /* side of a square of its part of the section, in space of a cube of its volume, m */
   PetscReal modulus, density; /* of its material, Pa, kg/m3 */
   PetscReal stiffer;          /* see ContactPoint */
-  PetscInt n, carrier;        /* so many nodes, of Surface.carrier from there on; 0: not asked for */
+  PetscInt row[2];            /* where it stands among those of its body: see surface_sort */
+  PetscInt first_carrier, n;  /* its nodes, of Surface.carrier; n = 0: not asked for */
 } SurfacePoint;
 
-/* Where points are: bins of a lattice around them all. */
+/* Those of one body that are near another one, of all ranks on each: ascending along x, in space row by row. */
 typedef struct {
-  PetscReal min[3], side;
-  PetscInt counts[3];
-  PetscInt *start, *point; /* of each bin, x fastest, its points */
-} SurfaceBins;
-
-/* Those of one body that are near another one, of all ranks on each, ascending along x. */
-typedef struct {
-  PetscInt dim, n, n_carriers;
+  PetscInt dim, n;
   SurfacePoint *point;
+  PetscInt n_carriers;
   SurfaceCarrier *carrier;
-  SurfaceBins bins;
+  /* by surface_sort */
+  PetscReal reach; /* the largest of its points, m */
+  PetscReal low[2], side;
+  PetscInt rows[2];
 } Surface;
 
 typedef struct {
@@ -59,16 +58,6 @@ PetscErrorCode SurfaceGather(const SurfaceInput *in, PetscInt body, const PetscR
                              Surface *surface);
 PetscErrorCode SurfaceClear(Surface *surface);
 
-/* surface_bins.c. Puts the points in order, and into bins of this side, m; SurfaceClear frees them, too. */
-PetscErrorCode SurfaceSort(Surface *surface, PetscReal side);
-/* Those in the bins within `radius` of x, one after the other: for (q = surface_first(..); q; q = surface_next(..)). */
-typedef struct {
-  const Surface *surface;
-  PetscInt lo[3], hi[3], bin[3], k, end;
-} SurfaceWalk;
-const SurfacePoint *surface_first(const Surface *surface, const PetscReal *x, PetscReal radius, SurfaceWalk *walk);
-const SurfacePoint *surface_next(SurfaceWalk *walk);
-
 /* Where the part of another body is that a point meets. */
 typedef struct {
   const SurfacePoint *other;
@@ -77,21 +66,19 @@ typedef struct {
   PetscReal cover;     /* share of the point's surface that the other body stands before */
 } SurfacePair;
 
-/* Offset of q from p. */
-static inline void surface_offset(const SurfacePoint *p, const SurfacePoint *q, PetscReal r[3])
-{
-  for (int d = 0; d < 3; ++d) r[d] = q->x[d] - p->x[d];
-}
+/* surface_walk.c. Points into the order in which they are looked for, the same on however many ranks. */
+void surface_sort(Surface *s);
 
-static inline PetscReal surface_dot(const PetscReal a[3], const PetscReal b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+/* A walk over all points that are no farther than a distance from a place, along each axis, and some more. */
+typedef struct {
+  const Surface *surface;
+  PetscReal low, high; /* along x, m; high may be lowered on the way */
+  PetscInt from[2], to[2], row[2], next;
+} SurfaceWalk;
 
-static inline void surface_cross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
-{
-  for (int d = 0; d < 3; ++d) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
-}
+SurfaceWalk surface_walk(const Surface *s, const PetscReal x[3], PetscReal distance);
+/* NULL: that was all. */
+const SurfacePoint *surface_next(SurfaceWalk *walk);
 
 /* surface_cover.c. SurfacePair.cover of what was found; 0: too little to count. */
 PetscReal surface_cover(const Surface *a, const SurfacePoint *p, const Surface *b, const SurfacePair *pair);

@@ -38,78 +38,86 @@ static void describe(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
                       .modulus = material->wave_modulus,
                       .stiffer = material_confined(material) / material->wave_modulus,
                       .density = material->density};
-  for (PetscInt d = 0; d < points->dim; ++d) s->x[d] = x[d];
-  for (PetscInt d = 0; d < points->dim; ++d) s->corner[d] = point_real(points, POINT_CORNER, p)[d];
+  for (PetscInt d = 0; d < points->dim; ++d) s->x[d] = x[d], s->corner[d] = point_real(points, POINT_CORNER, p)[d];
   point_F(points, p, s->F);
-  const PetscReal thicker = points->dim == 2 ? s->F[8] : 1, root = 1 / (PetscReal)points->dim;
-  s->reach = s->first * PetscPowReal(points->real[POINT_J][p] / thicker, root);
-  s->size = PetscPowReal(points->real[POINT_J][p] * points->real[POINT_VOLUME][p] / weight, root);
+  const PetscReal J = points->real[POINT_J][p], volume = J * points->real[POINT_VOLUME][p];
+  s->reach = s->first * (points->dim == 2 ? PetscSqrtReal(J / s->F[8]) : PetscCbrtReal(J));
+  s->size = points->dim == 2 ? PetscSqrtReal(volume / weight) : PetscCbrtReal(volume);
 }
 
-/* The nodes of the surface's last point. */
-static PetscErrorCode Carriers(const SurfaceInput *in, PetscInt g, Surface *surface)
+/* Those of the last point; there is room for them. */
+static PetscErrorCode Carriers(const SurfaceInput *in, PetscInt g, SurfacePoint *s, Surface *surface)
 {
-  const PetscInt nn = support_nodes(in->support, g), *node = in->support->node + in->support->node_start[g];
-  SurfacePoint *s = surface->point + surface->n - 1;
+  const PetscInt dim = surface->dim, nn = support_nodes(in->support, g);
+  const PetscInt *node = in->support->node + in->support->node_start[g];
+  const PetscReal *N = support_N(in->support, g, s->owner), *dN = support_dN(in->support, g, s->owner, dim);
   PetscReal bend[3 * SURFACE_NODES];
 
   PetscFunctionBeginUser;
   PetscCheck(nn <= SURFACE_NODES, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%" PetscInt_FMT " nodes carry a point", nn);
-  const PetscReal *N = support_N(in->support, g, s->owner), *dN = support_dN(in->support, g, s->owner, surface->dim);
-  const PetscBool bends = (PetscBool)(in->bends && in->bends(in->bends_context, s->owner, nn, bend));
+  if (!in->bends || !in->bends(in->bends_context, s->owner, nn, bend)) PetscCall(PetscArrayzero(bend, dim * nn));
   s->n = nn;
-  s->carrier = surface->n_carriers;
+  s->first_carrier = surface->n_carriers;
   for (PetscInt I = 0; I < nn; ++I) {
     SurfaceCarrier *c = surface->carrier + surface->n_carriers++;
     *c = (SurfaceCarrier){.node = in->grid->global_node[node[I]], .N = N[I]};
-    for (PetscInt d = 0; d < surface->dim; ++d) {
-      c->dN[d] = dN[I * surface->dim + d];
-      c->bend[d] = bends ? bend[I * surface->dim + d] : 0;
-    }
+    for (PetscInt d = 0; d < dim; ++d) c->dN[d] = dN[I * dim + d], c->bend[d] = bend[I * dim + d];
   }
   PetscFunctionReturn(0);
 }
 
-/* What each rank has, n things of so many bytes, on all, in the order of the ranks; `before`: of lower ranks. */
-static PetscErrorCode ShareThings(MPI_Comm comm, size_t bytes, PetscInt *n, void **things, PetscInt *before)
+/* What each rank has, on all: n things of a size, whose array is replaced. */
+static PetscErrorCode ShareArray(MPI_Comm comm, size_t size, PetscInt *n, void **array)
 {
-  PetscMPIInt size, rank, mine, *count, *start;
-  char *all;
+  PetscMPIInt ranks, mine, bytes, *count, *start;
+  MPI_Datatype type;
+  void *all;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(PetscMPIIntCast(*n * (PetscInt)bytes, &mine));
-  PetscCall(PetscMalloc2(size, &count, size + 1, &start));
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  PetscCall(PetscMPIIntCast(*n, &mine));
+  PetscCall(PetscMPIIntCast((PetscInt)size, &bytes));
+  PetscCallMPI(MPI_Type_contiguous(bytes, MPI_BYTE, &type));
+  PetscCallMPI(MPI_Type_commit(&type));
+  PetscCall(PetscMalloc2(ranks, &count, ranks + 1, &start));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, comm));
-  start[0] = 0;
-  for (PetscMPIInt r = 0; r < size; ++r) start[r + 1] = start[r] + count[r];
-  *n = start[size] / (PetscInt)bytes;
-  *before = start[rank] / (PetscInt)bytes;
-  PetscCall(PetscMalloc1(start[size], &all));
-  PetscCallMPI(MPI_Allgatherv(*things, mine, MPI_BYTE, all, count, start, MPI_BYTE, comm));
-  PetscCall(PetscFree(*things));
+  *n = start[0] = 0;
+  for (PetscMPIInt r = 0; r < ranks; ++r) {
+    *n += count[r];
+    PetscCall(PetscMPIIntCast(*n, start + r + 1));
+  }
+  PetscCall(PetscMalloc((size_t)*n * size, &all));
+  PetscCallMPI(MPI_Allgatherv(*array, mine, type, all, count, start, type, comm));
+  PetscCallMPI(MPI_Type_free(&type));
   PetscCall(PetscFree2(count, start));
-  *things = all;
+  PetscCall(PetscFree(*array));
+  *array = all;
   PetscFunctionReturn(0);
 }
 
+/* Carriers of a rank stand behind those of the ranks before. */
 static PetscErrorCode Share(MPI_Comm comm, Surface *surface)
 {
-  const PetscInt own = surface->n;
-  PetscMPIInt size;
-  PetscInt before;
-  void *points = surface->point, *carriers = surface->carrier;
+  PetscInt before = 0;
+  PetscMPIInt ranks;
+  void *point = surface->point, *carrier = surface->carrier;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  if (size == 1) PetscFunctionReturn(0);
-  PetscCall(ShareThings(comm, sizeof *surface->carrier, &surface->n_carriers, &carriers, &before));
-  for (PetscInt k = 0; k < own; ++k) surface->point[k].carrier += before;
-  PetscCall(ShareThings(comm, sizeof *surface->point, &surface->n, &points, &before));
-  surface->point = points;
-  surface->carrier = carriers;
+  PetscCallMPI(MPI_Comm_size(comm, &ranks));
+  if (ranks == 1) PetscFunctionReturn(0);
+  PetscCallMPI(MPI_Scan(&surface->n_carriers, &before, 1, MPIU_INT, MPI_SUM, comm));
+  for (PetscInt k = 0; k < surface->n; ++k) surface->point[k].first_carrier += before - surface->n_carriers;
+  PetscCall(ShareArray(comm, sizeof *surface->point, &surface->n, &point));
+  PetscCall(ShareArray(comm, sizeof *surface->carrier, &surface->n_carriers, &carrier));
+  surface->point = point;
+  surface->carrier = carrier;
   PetscFunctionReturn(0);
+}
+
+static PetscBool is_wanted(const SurfaceInput *in, PetscInt p, PetscInt body, const PetscReal *bounds, PetscReal within)
+{
+  const Points *points = in->points;
+  return (PetscBool)(points->body[p] == body && is_near(point_real(points, POINT_X, p), points->dim, bounds, within));
 }
 
 PetscErrorCode SurfaceGather(const SurfaceInput *in, PetscInt body, const PetscReal *bounds, PetscReal within,
@@ -120,20 +128,20 @@ PetscErrorCode SurfaceGather(const SurfaceInput *in, PetscInt body, const PetscR
   PetscInt n = 0, g = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < points->n; ++p)
-    n += points->body[p] == body && is_near(point_real(points, POINT_X, p), points->dim, bounds, within);
+  for (PetscInt p = 0; p < points->n; ++p) n += is_wanted(in, p, body, bounds, within);
   *surface = (Surface){.dim = points->dim};
   PetscCall(PetscMalloc1(n, &surface->point));
   PetscCall(PetscMalloc1(w ? n * SURFACE_NODES : 0, &surface->carrier));
   for (PetscInt p = 0; p < points->n; ++p) {
     while (w && g < w->n_groups && p >= w->point_start[g + 1]) ++g;
-    if (points->body[p] != body || !is_near(point_real(points, POINT_X, p), points->dim, bounds, within)) continue;
+    if (!is_wanted(in, p, body, bounds, within)) continue;
     if (w && g == w->n_groups) continue; /* lost */
-    describe(in, p, surface->point + surface->n++);
-    if (w) PetscCall(Carriers(in, g, surface));
+    describe(in, p, surface->point + surface->n);
+    if (w) PetscCall(Carriers(in, g, surface->point + surface->n, surface));
+    ++surface->n;
   }
   PetscCall(Share(in->comm, surface));
-  PetscCall(SurfaceSort(surface, in->grid->smallest));
+  surface_sort(surface);
   PetscFunctionReturn(0);
 }
 
@@ -142,8 +150,6 @@ PetscErrorCode SurfaceClear(Surface *surface)
   PetscFunctionBeginUser;
   PetscCall(PetscFree(surface->point));
   PetscCall(PetscFree(surface->carrier));
-  PetscCall(PetscFree(surface->bins.start));
-  PetscCall(PetscFree(surface->bins.point));
   surface->n = surface->n_carriers = 0;
   PetscFunctionReturn(0);
 }

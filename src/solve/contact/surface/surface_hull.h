@@ -1,32 +1,34 @@
-/* The convex hulls of points of two bodies around a place, and the way from one to the other. */
+/* Parts of bodies around a place, and the way between their convex hulls. */
 #pragma once
 #include "solve/contact/surface/surface.h"
 
-#define SURFACE_MOST 2048 /* points around a place: a ball of two cells in space has some 300 of eight a cell */
+#define PART_MOST 2048
 
-/* Points around a place; disks and balls, as wide as their reach, are so much wider than the smallest. */
+/* Points around a place; disks, in space balls, are so much wider than the smallest. */
 typedef struct {
   PetscInt dim, n;
-  const SurfacePoint *point[SURFACE_MOST];
   PetscReal least;
-} SurfacePart;
+  const SurfacePoint *point[PART_MOST];
+} Part;
 
-static inline void surface_part_begin(SurfacePart *part, PetscInt dim)
+static inline PetscReal dot(const PetscReal *a, const PetscReal *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+static inline void part_begin(Part *part, PetscInt dim)
 {
   part->dim = dim;
   part->n = 0;
   part->least = PETSC_MAX_REAL;
 }
 
-/* Beyond SURFACE_MOST they are left out. */
-static inline void surface_part_add(SurfacePart *part, const SurfacePoint *p)
+/* What there is no room for is left out. */
+static inline void part_add(Part *part, const SurfacePoint *p)
 {
-  if (part->n == SURFACE_MOST) return;
+  if (part->n == PART_MOST) return;
   part->point[part->n++] = p;
   part->least = PetscMin(part->least, p->reach);
 }
 
-/* The way from b to a, unit; both hold some points. Of bodies that have sunk into each other it is the shortest way out.
- * Hulls of grains that stand round another body overlap without touching it: where the way out is longer than
- * `deepest`, n stays as it came, the way from the nearest point. */
-void surface_face(const SurfacePart *a, const SurfacePart *b, PetscReal deepest, PetscReal n[3]);
+/* The way from b to a, unit: of bodies that have sunk into each other the shortest way out. Hulls of grains that stand
+ * round another body overlap without touching it: those deeper than `deepest` leave n as it comes, that from the
+ * nearest point. Both hold some. */
+void hull_face(const Part *a, const Part *b, PetscReal deepest, PetscReal n[3]);
