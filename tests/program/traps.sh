@@ -480,4 +480,23 @@ warned "a wall beside the lines" --
 expect "held in the middle of a cell" 0 "$talus" run case.yaml --out held --force --quiet
 awk -F, 'END { exit !($3 > -0.002 && $3 < 0) }' held/history.csv || fail "$name: $(tail -n 1 held/history.csv)"
 
+# --- loads on slanting sides and points, explicit steps ---
+# A wedge in free flight under a traction of 1 Pa: it gains that impulse, and next to no strain.
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: explicit, end: 0.5, step: 0.002}
+grid: {box: {min: [-1, -1], max: [3, 3]}, size: 0.1}
+bodies: [{name: b, shape: {polygon: [[0, 0], [1.5, 0], [0.5, 0.6], [0, 0.6]]}, material: m, velocity: [0.2, 0.3]}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+loads: {tractions: [{on: {body: b}, value: [0, 1]}]}
+measures: {along: {momentum: x}, up: {momentum: y}, elastic: {energy: elastic}, mechanical: {energy: mechanical}}
+END
+for ranks in 1 2; do
+  expect "a wedge on $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out wedge --force --quiet
+  # the circumference, 1.5 + sqrt(1.36) + 0.5 + 0.6, times 1 Pa and 0.5 s
+  awk -F, 'END { exit !(($3 / 120 - 1) ^ 2 < 1e-18 && ($4 / 181.883095 - 1) ^ 2 < 1e-12 && $5 < 1e-3 && $6 < 39.6) }' wedge/history.csv ||
+    fail "$name: $(tail -n 1 wedge/history.csv)"
+done
+
 finish

@@ -56,17 +56,24 @@ static PetscReal leads_by_mass(const Discretisation *s)
   return s->grid->dim == 3 ? LEADS_BY_MASS_IN_SPACE : LEADS_BY_MASS;
 }
 
+/* By mass, what is enough depends on the place: who wants to follow by its own measure, which is in `ways` meanwhile,
+ * leads nobody by another's. What is handed on to it would be handed on no further. */
+static PetscBool may_lead(const Extension *e, PetscInt node, PetscReal enough)
+{
+  return (PetscBool)(e->fill[node] >= enough && !(e->by_mass && e->ways[node] > 0));
+}
+
 static PetscReal find_leads(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[LATTICE])
 {
   const PetscReal least = e->by_mass ? leads_by_mass(s) : PetscMax(LEADS, s->c->stabilisation.follow);
   const PetscReal enough = least * half_full(s, e, at);
   PetscInt bits = 0;
-  for (PetscInt k = 0; k < 2 * s->grid->dim && e->fill[node] >= enough; ++k) {
+  for (PetscInt k = 0; k < 2 * s->grid->dim && may_lead(e, node, enough); ++k) {
     PetscInt step[3] = {0, 0, 0};
     const PetscBool above = k % 2 ? PETSC_TRUE : PETSC_FALSE;
     step[k / 2] = above ? 1 : -1;
     const PetscInt behind = node_beside(s->grid->box, at, step);
-    if (behind < 0 || e->fill[behind] < enough) continue;
+    if (behind < 0 || !may_lead(e, behind, enough)) continue;
     bits |= leads_bit(k / 2, above, PETSC_FALSE);
     if (is_held_as(s->boundary, node, behind)) bits |= leads_bit(k / 2, above, PETSC_TRUE);
   }
@@ -93,6 +100,11 @@ static PetscBool wants_lead(const Discretisation *s, const Extension *e, PetscIn
   if (e->by_mass) return (PetscBool)(e->loaded[node] > 0 && e->fill[node] < leads_by_mass(s) * half_full(s, e, at));
   if (e->loaded[node] > 0) return (PetscBool)(e->fill[node] < PetscMax(LEADS, least));
   return (PetscBool)(e->fill[node] > 0 && e->fill[node] < least);
+}
+
+static PetscReal find_wants(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[LATTICE])
+{
+  return wants_lead(s, e, node, at) ? 1 : 0;
 }
 
 static PetscReal find_ways(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[LATTICE])
@@ -137,6 +149,7 @@ PetscErrorCode ChooseWaysAmong(const Discretisation *s, Extension *e, PetscInt n
                                PetscInt n, const PetscInt *node)
 {
   PetscFunctionBeginUser;
+  PetscCall(Find(s, e, n, node, find_wants, e->ways));
   PetscCall(Find(s, e, n_leaders, leader, find_leads, e->leads));
   PetscCall(Find(s, e, n, node, find_ways, e->ways));
   PetscFunctionReturn(0);

@@ -20,7 +20,8 @@ static PetscErrorCode ExtensionCreate(const Discretisation *s, Extension **exten
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&e));
-  PetscCall(PetscCalloc6(n, &e->fill, n, &e->loaded, n, &e->leads, n, &e->ways, n, &e->place, n, &e->extent));
+  PetscCall(
+    PetscCalloc7(n, &e->fill, n, &e->lean, n, &e->loaded, n, &e->leads, n, &e->ways, n, &e->place, n, &e->extent));
   PetscCall(PetscMalloc3(n, &e->follower, n, &e->listed, n, &e->beside));
   if (box) find_places(box, e->place);
   PetscCall(SupportCreate(&e->spare));
@@ -37,7 +38,7 @@ PetscErrorCode ExtensionDestroy(Extension **extension)
 
   PetscFunctionBeginUser;
   if (!e) PetscFunctionReturn(0);
-  PetscCall(PetscFree6(e->fill, e->loaded, e->leads, e->ways, e->place, e->extent));
+  PetscCall(PetscFree7(e->fill, e->lean, e->loaded, e->leads, e->ways, e->place, e->extent));
   PetscCall(SupportDestroy(&e->spare));
   PetscCall(SupportDestroy(&e->carried));
   PetscCall(SupportDestroy(&e->spare_carried));

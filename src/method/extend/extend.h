@@ -15,6 +15,7 @@ typedef struct Extension {
    * be compared with the nodes around */
   PetscReal *fill;
   PetscBool by_mass;
+  PetscReal *lean;            /* n_nodes, by_mass: see row_add_way */
   PetscReal *loaded;          /* n_nodes: does a piece of a loaded surface see it? */
   PetscReal *leads;           /* n_nodes: bits of leads_bit */
   PetscReal *ways;            /* n_nodes: bits of the ways on which the node follows; 0: it does not */

@@ -5,30 +5,36 @@
 #include "method/extend/choose.h"
 #include "method/extend/row.h"
 
-/* Numbers of the rows of all followers whose first leader this rank owns: it alone knows all of a row. back: from
- * leaders to followers (`at`, in the order of the list), else the other way. */
+#define KEEPS 0.7 /* of its mass: no less is left to a node that leads */
+
+/* The row of a follower on one of its ways whose first leader this rank owns: it alone knows all of a row. */
+static PetscBool owned_row(const Discretisation *s, PetscInt follower, PetscInt way, Row *row)
+{
+  const Extension *e = s->extension;
+  const PetscInt ways = (PetscInt)e->ways[follower], *here = e->place[follower];
+  const PetscReal none = 0, share = 1 / (PetscReal)ways_many(ways);
+  PetscInt step[3];
+  row->n = 0;
+  way_of(way, step);
+  const PetscInt base = ways >> way & 1 ? node_beside(s->grid->box, here, step) : -1;
+  if (base < 0 || base >= s->grid->n_owned) return PETSC_FALSE;
+  return row_add_way(row, 0, s->grid->box, here, step, e->lean, share, 1, &none);
+}
+
+/* Numbers of the rows of all followers. back: from leaders to followers (`at`, in the order of the list), else the
+ * other way. */
 static void pass(const Discretisation *s, PetscBool back, PetscInt n, PetscReal *at, PetscReal *field)
 {
   const Extension *e = s->extension;
-  const GridBox *box = s->grid->box;
-  const PetscReal none = 0;
-  PetscInt step[3];
   Row row;
-  for (PetscInt k = 0; k < e->n_followers; ++k) {
-    const PetscInt ways = (PetscInt)e->ways[e->follower[k]];
-    const PetscInt *here = e->place[e->follower[k]];
+  for (PetscInt k = 0; k < e->n_followers; ++k)
     for (PetscInt way = 0; way < WAYS; ++way) {
-      row.n = 0;
-      way_of(way, step);
-      const PetscInt base = ways >> way & 1 ? node_beside(box, here, step) : -1;
-      if (base < 0 || base >= s->grid->n_owned) continue;
-      if (!row_add_way(&row, 0, box, here, step, 1 / (PetscReal)ways_many(ways), 1, &none)) continue;
+      if (!owned_row(s, e->follower[k], way, &row)) continue;
       for (PetscInt I = 0; I < row.n; ++I)
         for (PetscInt d = 0; d < n; ++d)
           if (back) at[k * n + d] += row.N[I] * field[row.node[I] * n + d];
           else field[row.node[I] * n + d] += row.N[I] * at[k * n + d];
     }
-  }
 }
 
 /* What ranks have added to the sums that owners know, and what these then know, on all copies. */
@@ -116,6 +122,34 @@ static PetscInt list_around(const Discretisation *s, Extension *e, PetscInt n, c
   return found;
 }
 
+/* The linear way takes mass from the node behind. Where several followers take from one, as at a slanting or pointed
+ * end, it could be left with none, and any force would throw it away: it gives them as much of its slope as leaves it
+ * enough. */
+static PetscErrorCode SpareLeaders(const Discretisation *s, PetscInt n, const PetscInt *active, PetscInt stride,
+                                   const PetscReal *mass)
+{
+  Extension *e = s->extension;
+  PetscReal *taken;
+  Row row;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(s->grid->n_nodes, &taken));
+  for (PetscInt k = 0; k < e->n_followers; ++k)
+    for (PetscInt way = 0; way < WAYS; ++way) {
+      if (!owned_row(s, e->follower[k], way, &row)) continue;
+      for (PetscInt I = 0; I < row.n; ++I)
+        if (row.N[I] < 0) taken[row.node[I]] -= row.N[I] * mass[e->follower[k] * stride];
+    }
+  PetscCall(Exchange(s->grid, 1, taken));
+  for (PetscInt k = 0; k < n; ++k) {
+    const PetscReal most = (1 - KEEPS) * mass[active[k] * stride];
+    if (active[k] < s->grid->n_owned && taken[active[k]] > most) e->lean[active[k]] = most / taken[active[k]];
+  }
+  PetscCall(GridToGhosts(s->grid, 1, e->lean));
+  PetscCall(PetscFree(taken));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ExtensionByMass(Discretisation *s, PetscInt n, const PetscInt *active, PetscInt stride,
                                const PetscReal *mass, PetscBool *any)
 {
@@ -126,10 +160,12 @@ PetscErrorCode ExtensionByMass(Discretisation *s, PetscInt n, const PetscInt *ac
   PetscCall(PetscArrayzero(e->leads, s->grid->n_nodes));
   PetscCall(PetscArrayzero(e->ways, s->grid->n_nodes));
   PetscCall(PetscArrayzero(e->fill, s->grid->n_nodes));
+  for (PetscInt i = 0; i < s->grid->n_nodes; ++i) e->lean[i] = 1;
   for (PetscInt k = 0; k < n; ++k) e->fill[active[k]] = mass[active[k] * stride] / s->whole[active[k]];
   PetscCall(ExtensionLoaded(s));
   const PetscInt leaders = list_around(s, e, n, active, e->beside);
   PetscCall(ChooseWaysAmong(s, e, leaders, e->beside, e->n_listed, e->listed));
   PetscCall(ExtensionList(s, e->n_listed, e->listed, any));
+  if (*any) PetscCall(SpareLeaders(s, n, active, stride, mass));
   PetscFunctionReturn(0);
 }

@@ -45,7 +45,7 @@ void row_add(Row *row, PetscInt slopes, PetscInt node, PetscReal share, PetscRea
 /* With B one step on the way, u = u_B + sum_d r_d (u_(B + d) - u_B) over the axes of the way: the linear function of
  * these nodes. */
 PetscBool row_add_way(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[LATTICE], const PetscInt step[3],
-                      PetscReal share, PetscReal N, const PetscReal *dN)
+                      const PetscReal *lean, PetscReal share, PetscReal N, const PetscReal *dN)
 {
   const PetscInt base[LATTICE] = {at[0] + step[0], at[1] + step[1], at[2] + step[2], at[3]};
   PetscReal rest = share;
@@ -54,9 +54,10 @@ PetscBool row_add_way(Row *row, PetscInt slopes, const GridBox *box, const Petsc
     if (!step[d]) continue;
     along[d] = step[d];
     const PetscReal *line = box->line[d];
-    const PetscReal r = share * (line[at[d]] - line[base[d]]) / (line[base[d] + step[d]] - line[base[d]]);
+    const PetscReal whole = share * (line[at[d]] - line[base[d]]) / (line[base[d] + step[d]] - line[base[d]]);
     const PetscInt behind = node_beside(box, base, along);
     if (behind < 0) return PETSC_FALSE;
+    const PetscReal r = lean ? lean[behind] * whole : whole;
     row_add(row, slopes, behind, r, N, dN);
     rest -= r;
   }
@@ -72,7 +73,7 @@ PetscBool row_add_follower(Row *row, PetscInt slopes, const GridBox *box, const 
   for (PetscInt way = 0; way < WAYS; ++way) {
     if (!(ways >> way & 1)) continue;
     way_of(way, step);
-    if (node_beside(box, at, step) < 0 || !row_add_way(row, slopes, box, at, step, 1 / (PetscReal)n, N, dN))
+    if (node_beside(box, at, step) < 0 || !row_add_way(row, slopes, box, at, step, NULL, 1 / (PetscReal)n, N, dN))
       return PETSC_FALSE;
   }
   return PETSC_TRUE;

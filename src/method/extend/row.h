@@ -18,9 +18,10 @@ PetscInt ways_many(PetscInt ways);
 PetscInt node_beside(const GridBox *box, const PetscInt at[LATTICE], const PetscInt step[3]);
 /* share times N and dN (so many slopes) more of a node. */
 void row_add(Row *row, PetscInt slopes, PetscInt node, PetscReal share, PetscReal N, const PetscReal *dN);
-/* The same of what a node at this place follows on one way; PETSC_FALSE where this rank does not know all of it. */
+/* The same of what a node at this place follows on one way; PETSC_FALSE where this rank does not know all of it. lean:
+ * of each node the share of the slope that it gives as the one behind; NULL: all of it. */
 PetscBool row_add_way(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[LATTICE], const PetscInt step[3],
-                      PetscReal share, PetscReal N, const PetscReal *dN);
+                      const PetscReal *lean, PetscReal share, PetscReal N, const PetscReal *dN);
 /* The same of a node at this place that follows on these ways (bits), from all of them alike; PETSC_FALSE where this
  * rank does not know all nodes that it follows. */
 PetscBool row_add_follower(Row *row, PetscInt slopes, const GridBox *box, const PetscInt at[LATTICE], PetscInt ways,
