@@ -39,9 +39,10 @@ static PetscErrorCode SharingPair(const Model *m, PetscInt *pair)
   PetscCall(PetscMalloc2(grid->n_nodes, &here, grid->n_nodes, &there));
   for (PetscInt i = 0; i < grid->n_nodes; ++i) here[i] = -1;
   for (PetscInt e = 0; e < m->points->n * nn; ++e) {
-    PetscReal *body = here + grid->cell_node[m->points->cell[e / nn] * nn + e % nn];
-    found = PetscMax(found, pair_of(m->c, m->points->body[e / nn], (PetscInt)*body));
-    *body = (PetscReal)m->points->body[e / nn];
+    const PetscInt p = e / nn, mine = m->points->body[p];
+    PetscReal *body = here + grid->cell_node[m->points->cell[p] * nn + e % nn];
+    found = PetscMax(found, pair_of(m->c, mine, (PetscInt)*body));
+    *body = (PetscReal)mine;
   }
   PetscCall(PetscArraycpy(there, here, grid->n_nodes));
   PetscCall(GridToGhosts(grid, 1, there));
