@@ -54,7 +54,8 @@ static void settings(Bench *b, const Pair *r, InterfaceSpec *joint)
   b->c.interfaces = joint;
 }
 
-/* A block of 1 x 0.5 m on one of 2.5 x 0.5 m, whose lower side is held; in space half a metre thick on one of a metre. */
+/* A block of 1 x 0.5 m on one of 2.5 x 0.5 m, whose lower side is held; in space they are half a metre and a metre
+ * thick. */
 static Model *standing(Bench *b, const Pair *r, PetscReal slope, PetscBool dynamic, InterfaceSpec *joint)
 {
   bench_init(b, r->method, r->cell, 0);
