@@ -18,7 +18,7 @@ static PetscBool owned_row(const Discretisation *s, PetscInt follower, PetscInt 
   way_of(way, step);
   const PetscInt base = ways >> way & 1 ? node_beside(s->grid->box, here, step) : -1;
   if (base < 0 || base >= s->grid->n_owned) return PETSC_FALSE;
-  return row_add_way(row, 0, s->grid->box, here, step, e->lean, share, 1, &none);
+  return row_add_way(row, 0, s->grid->box, here, step, e->by_mass ? e->lean : NULL, share, 1, &none);
 }
 
 /* Numbers of the rows of all followers. back: from leaders to followers (`at`, in the order of the list), else the
