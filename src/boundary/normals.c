@@ -1,4 +1,5 @@
 #include "boundary/normals.h"
+#include "base/math/vector.h"
 #include "base/math/eigen.h"
 
 #define SIDES 6 /* a cell has at most */
@@ -35,11 +36,6 @@ static PetscErrorCode CollectSides(const Grid *grid, const Case *c, PetscInt onl
   PetscFunctionReturn(0);
 }
 
-static void cross(const PetscReal *a, const PetscReal *b, PetscReal *c)
-{
-  for (int d = 0; d < 3; ++d) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
-}
-
 /* Of an edge: N linear, and the circle 2 pi r linear, too. */
 static void edge_normals(const Case *c, PetscReal x[4][3], PetscReal normal[4][3])
 {
@@ -62,9 +58,9 @@ static void face_normals(int nodes, PetscReal x[4][3], PetscReal normal[4][3])
     b[d] = nodes == 3 ? x[2][d] - x[0][d] : (-x[0][d] - x[1][d] + x[2][d] + x[3][d]) / 4;
     c[d] = nodes == 3 ? 0 : (x[0][d] - x[1][d] + x[2][d] - x[3][d]) / 4;
   }
-  cross(a, b, m);
-  cross(a, c, u);
-  cross(c, b, v);
+  vector_cross(a, b, m);
+  vector_cross(a, c, u);
+  vector_cross(c, b, v);
   for (int i = 0; i < nodes; ++i)
     for (int d = 0; d < 3; ++d) normal[i][d] = nodes == 3 ? m[d] / 6 : m[d] + (s[i] * u[d] + t[i] * v[d]) / 3;
 }

@@ -1,12 +1,11 @@
 /* The sides of one wall that meet a position at once, in its corners: places where the distance is least among those
  * around them, whose normals differ. The nearest of them is what wall_near finds. */
+#include "base/math/vector.h"
 #include <math.h>
 #include "wall/wall_private.h"
 
 #define ALIKE 0.9   /* cosine: normals that differ by less are those of one side, flat or curved */
 #define BEHIND 1e-9 /* of the gaps: a side that is hidden by another one begins beyond its plane */
-
-static PetscReal dot(const PetscReal a[3], const PetscReal b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 static PetscReal bend_of(const PetscReal *a, const PetscReal *b, const PetscReal *c)
 {
@@ -50,7 +49,8 @@ PetscBool wall_has_corners(const WallSpec *w)
 PetscBool sides_have(const WallSides *sides, const WallPlace *place)
 {
   for (PetscInt i = 0; i < sides->n; ++i)
-    if (sides->place[i].gap <= place->gap && dot(sides->place[i].normal, place->normal) > ALIKE) return PETSC_TRUE;
+    if (sides->place[i].gap <= place->gap && vector_dot(sides->place[i].normal, place->normal) > ALIKE)
+      return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -59,7 +59,7 @@ void sides_add(WallSides *sides, const WallPlace *place)
   PetscInt worst = 0;
   if (sides_have(sides, place)) return;
   for (PetscInt i = 0; i < sides->n; ++i) {
-    if (dot(sides->place[i].normal, place->normal) > ALIKE) {
+    if (vector_dot(sides->place[i].normal, place->normal) > ALIKE) {
       sides->place[i] = *place;
       return;
     }
@@ -111,7 +111,7 @@ void form_sides(const Form *f, const PetscReal x[3], int flip, PetscReal high, W
 static PetscBool is_seen(const WallPlace *place, PetscInt n, const WallPlace *others)
 {
   for (PetscInt i = 0; i < n; ++i) {
-    const PetscReal turn = dot(place->normal, others[i].normal), off = BEHIND * (place->gap + others[i].gap);
+    const PetscReal turn = vector_dot(place->normal, others[i].normal), off = BEHIND * (place->gap + others[i].gap);
     if (turn > ALIKE || others[i].gap - place->gap * turn < -off || place->gap - others[i].gap * turn < -off)
       return PETSC_FALSE;
   }
@@ -167,7 +167,7 @@ void wall_from_anchor(const Walls *walls, PetscInt k, PetscReal t, const PetscRe
   *place = anchor->place;
   for (int i = 0; i < 3; ++i) X[i] -= anchor->X[i];
   for (int i = 0; i < 3; ++i) {
-    bent[i] = dot(anchor->place.curvature + 3 * i, X);
+    bent[i] = vector_dot(anchor->place.curvature + 3 * i, X);
     place->gap += X[i] * (anchor->place.normal[i] + bent[i] / 2);
     place->normal[i] += bent[i];
   }

@@ -38,10 +38,7 @@ static inline const VoxelPattern *box_pattern(const GridBox *box, const PetscInt
 }
 
 /* All voxels. */
-static inline VoxelBlock box_voxels(const GridBox *box)
-{
-  return (VoxelBlock){{0}, {box->counts[0], box->counts[1], box->counts[2], box->counts[3]}};
-}
+static inline VoxelBlock box_voxels(const GridBox *box) { return block_of(box->counts); }
 
 /* box_blocks.c */
 PetscErrorCode BoxCreate(MPI_Comm comm, const Case *c, GridBox **box);

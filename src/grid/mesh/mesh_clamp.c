@@ -1,6 +1,7 @@
 /* The nearest position inside a mesh: on the nearest face of the outer boundary that this rank
  * knows. */
 #include "grid/mesh/mesh.h"
+#include "base/math/vector.h"
 
 /* Positions of a face's nodes; returns how many there are. */
 static PetscInt face_x(const Grid *grid, PetscInt face, PetscReal x[4][3])
@@ -27,18 +28,16 @@ PetscErrorCode MeshFaceTree(const Grid *grid, BoxTree **tree)
   PetscFunctionReturn(0);
 }
 
-static inline PetscReal dot(const PetscReal *a, const PetscReal *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 static PetscReal squared_gap(const PetscReal *a, const PetscReal *b)
 {
   const PetscReal d[3] = {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-  return dot(d, d);
+  return vector_dot(d, d);
 }
 
 static void nearest_on_segment(const PetscReal *a, const PetscReal *b, const PetscReal *x, PetscReal *nearest)
 {
   const PetscReal e[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, r[3] = {x[0] - a[0], x[1] - a[1], x[2] - a[2]};
-  const PetscReal t = PetscMin(PetscMax(dot(e, r) / dot(e, e), 0.0), 1.0);
+  const PetscReal t = PetscMin(PetscMax(vector_dot(e, r) / vector_dot(e, e), 0.0), 1.0);
   for (int d = 0; d < 3; ++d) nearest[d] = a[d] + t * e[d];
 }
 
@@ -56,7 +55,8 @@ static void nearest_on_triangle(const PetscReal *const v[3], const PetscReal *x,
 {
   PetscReal e[3], g[3], r[3], trial[3];
   for (int d = 0; d < 3; ++d) e[d] = v[1][d] - v[0][d], g[d] = v[2][d] - v[0][d], r[d] = x[d] - v[0][d];
-  const PetscReal ee = dot(e, e), eg = dot(e, g), gg = dot(g, g), er = dot(e, r), gr = dot(g, r);
+  const PetscReal ee = vector_dot(e, e), eg = vector_dot(e, g), gg = vector_dot(g, g), er = vector_dot(e, r),
+                  gr = vector_dot(g, r);
   const PetscReal det = ee * gg - eg * eg, s = (gg * er - eg * gr) / det, t = (ee * gr - eg * er) / det;
   if (s >= 0 && t >= 0 && s + t <= 1) {
     for (int d = 0; d < 3; ++d) trial[d] = v[0][d] + s * e[d] + t * g[d];

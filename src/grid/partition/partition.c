@@ -32,13 +32,6 @@ typedef struct {
   PetscInt *part; /* of each of these voxels: index into the current level */
 } Share;
 
-static VoxelBlock block_of(const PetscInt counts[LATTICE])
-{
-  VoxelBlock all = {{0}, {0}};
-  for (int d = 0; d < LATTICE; ++d) all.hi[d] = counts[d];
-  return all;
-}
-
 static PetscErrorCode ShareCreate(MPI_Comm comm, PetscInt dim, const PetscInt counts[LATTICE],
                                   const VoxelWeights *weights, Share *share)
 {

@@ -12,6 +12,14 @@ typedef struct {
   PetscInt lo[LATTICE], hi[LATTICE];
 } VoxelBlock;
 
+/* All of a lattice with so many along each axis. */
+static inline VoxelBlock block_of(const PetscInt counts[LATTICE])
+{
+  VoxelBlock all = {{0}, {0}};
+  for (int d = 0; d < LATTICE; ++d) all.hi[d] = counts[d];
+  return all;
+}
+
 static inline PetscInt block_size(const VoxelBlock *b)
 {
   PetscInt size = 1;

@@ -12,20 +12,19 @@
  * strain, and nothing drifts that sticks. Of waves that the grid resolves the dashpot takes a share
  * of (omega h / c)^2; without it the springs and second mapping (`musl`) shake a block that rests. */
 #include "model/explicit/explicit.h"
+#include "base/math/vector.h"
 
 #define DASHPOT 0.5 /* of the impedance of the material */
 /* (omega dt)^2 of springs alone on the nodes: a full cell beside a wall has 0.64 with a Courant number of 0.8, and 4 is
  * unstable, of which waves have up to 2.56 (docs/theory.md, section 73) */
 #define MOST 1.3
 
-static PetscReal dot(const PetscReal a[3], const PetscReal b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 static PetscReal *kept_of(const Model *m, const ContactPoint *c) { return contact_kept_of(m->contact, m->points, c); }
 
 /* Another scheme has left a force and no gap: the surface is where the spring has that force. */
 static void take_over(ContactPoint *c)
 {
-  const PetscReal pressure = dot(c->last, c->normal), off = pressure / c->law.penalty + c->open;
+  const PetscReal pressure = vector_dot(c->last, c->normal), off = pressure / c->law.penalty + c->open;
   if (c->before == CONTACT_OPEN || (pressure <= 0 && c->law.kind != CONTACT_BONDED)) return;
   c->reach += off;
   c->open -= off;
@@ -35,7 +34,7 @@ static void take_over(ContactPoint *c)
  * it was at the end of the last one. */
 static PetscReal beside_spring(const Explicit *e, const ContactPoint *c)
 {
-  const PetscReal kept = dot(c->last, c->normal);
+  const PetscReal kept = vector_dot(c->last, c->normal);
   if (e->before > 0) return c->open > 0 ? PetscMin(kept, 0) : kept;
   return c->before == CONTACT_OPEN ? 0 : kept + c->law.penalty * c->open;
 }
@@ -63,7 +62,7 @@ static void push(const Model *m, const Explicit *e, ContactPoint *c)
 {
   const WallPlace place = {.gap = c->open, .normal = {c->normal[0], c->normal[1], c->normal[2]}};
   static const PetscReal nowhere[3] = {0, 0, 0};
-  const PetscReal pressure = dot(c->last, c->normal);
+  const PetscReal pressure = vector_dot(c->last, c->normal);
   ContactForce before = {.pressure = beside_spring(e, c)};
   for (int d = 0; d < 3; ++d) before.shear[d] = c->last[d] - pressure * c->normal[d];
   c->law.bond = c->bond;
@@ -166,7 +165,7 @@ static PetscReal sliding_work(const ContactPoint *c, const PetscReal s[3])
  * its place on the surface against the wall. */
 static void keep(const Model *m, Explicit *e, const ContactPoint *c, const PetscReal move[3], PetscReal *kept)
 {
-  const PetscReal closing = dot(move, c->normal), rubs = c->law.kind != CONTACT_FRICTIONLESS;
+  const PetscReal closing = vector_dot(move, c->normal), rubs = c->law.kind != CONTACT_FRICTIONLESS;
   const PetscBool heavy = contact_rigid(m->contact, c) != NULL;
   const PetscReal dashpot =
     DASHPOT * c->borne * c->section * impedance_of(c) * (heavy ? heavy_substep(e) / e->critical : 1);

@@ -1,11 +1,10 @@
 #include "solve/contact/contact_law.h"
-
-static PetscReal dot(const PetscReal a[3], const PetscReal b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+#include "base/math/vector.h"
 
 /* What is left of a beside the normal. */
 static void across(const PetscReal n[3], const PetscReal a[3], PetscReal b[3])
 {
-  const PetscReal along = dot(n, a);
+  const PetscReal along = vector_dot(n, a);
   for (int i = 0; i < 3; ++i) b[i] = a[i] - along * n[i];
 }
 
@@ -70,7 +69,7 @@ ContactState contact_law(const ContactLaw *law, const WallPlace *place, const Pe
   if (law->kind == CONTACT_FRICTIONLESS) return CONTACT_SLIDES;
   for (int i = 0; i < 3; ++i) trial[i] = multiplier->shear[i] - law->along * slip[i];
   across(n, trial, now->shear);
-  const PetscReal size = PetscSqrtReal(dot(now->shear, now->shear));
+  const PetscReal size = PetscSqrtReal(vector_dot(now->shear, now->shear));
   const PetscReal bound = bound_of(law, now->pressure, &slope);
   if (size <= bound || law->grips) {
     if (K) stick(law, n, K);

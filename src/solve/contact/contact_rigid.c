@@ -1,5 +1,6 @@
 /* Contact as walls with mass feel it: forces and torques, and the borders of the tangent. */
 #include "solve/contact/contact.h"
+#include "base/math/vector.h"
 
 #define SUMS (RIGID + 3)
 
@@ -16,13 +17,6 @@ static void motion_of(int i, const PetscReal arm[3], PetscReal motion[3])
   if (i < 3) motion[i] = 1;
   else cross_axis(i - 3, arm, motion);
 }
-
-static void cross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
-{
-  for (int i = 0, j = 1, k = 2; i < 3; ++i, j = (j + 1) % 3, k = (k + 1) % 3) c[i] = a[j] * b[k] - a[k] * b[j];
-}
-
-static PetscReal dot(const PetscReal a[3], const PetscReal b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 PetscErrorCode RigidSums(Contact *s, const NodalScene *scene)
 {
@@ -42,7 +36,7 @@ PetscErrorCode RigidSums(Contact *s, const NodalScene *scene)
     own[RIGID + 2] += c->law.penalty;
     for (int i = 0; i < RIGID; ++i) {
       motion_of(i, lever, motion);
-      const PetscReal along = dot(motion, f);
+      const PetscReal along = vector_dot(motion, f);
       own[i] += along;
       if (i < 3) force += along * along;
       else torque += along * along;
@@ -79,11 +73,11 @@ static PetscBool touch_of(const Contact *s, ContactPoint *c, const RigidWall *b,
   for (int i = 0; i < RIGID; ++i) {
     PetscReal axis[3] = {0, 0, 0};
     if (i > 2) rigid_turns(b, i - 3, axis);
-    cross(axis, at, t->motion[i]);
+    vector_cross(axis, at, t->motion[i]);
     if (i < 3) t->motion[i][i] = 1;
     motion_of(i, lever, t->arm[i]);
-    cross(axis, t->f, t->change[i]); /* the force turns with its wall */
-    for (int d = 0; d < 3; ++d) t->change[i][d] += dot(t->K + 3 * d, t->motion[i]);
+    vector_cross(axis, t->f, t->change[i]); /* the force turns with its wall */
+    for (int d = 0; d < 3; ++d) t->change[i][d] += vector_dot(t->K + 3 * d, t->motion[i]);
   }
   return PETSC_TRUE;
 }
@@ -100,7 +94,8 @@ static void add_columns(const Contact *s, const RigidWall *b, const Touch *t, Pe
     for (int i = 0; i < RIGID; ++i) {
       PetscReal more[3] = {0, 0, 0}; /* the lever is shorter by what the centre has moved */
       if (j < 3 && i > 2) cross_axis(j, t->f, more);
-      D[(first + i) * n + first + j] += b->share * (dot(t->arm[i], t->change[j]) - b->part * (i > 2 ? more[i - 3] : 0));
+      D[(first + i) * n + first + j] +=
+        b->share * (vector_dot(t->arm[i], t->change[j]) - b->part * (i > 2 ? more[i - 3] : 0));
     }
   }
 }
@@ -115,7 +110,7 @@ static void add_rows(const Contact *s, const RigidWall *b, const Touch *t, Petsc
       PetscReal longer[3] = {0, 0, 0};
       if (!rigid_has(b, i)) continue;
       if (i > 2) cross_axis((int)d, t->f, longer);
-      const PetscReal rate = b->share * whole * (b->part * (i > 2 ? longer[i - 3] : 0) - dot(t->arm[i], column));
+      const PetscReal rate = b->share * whole * (b->part * (i > 2 ? longer[i - 3] : 0) - vector_dot(t->arm[i], column));
       for (PetscInt e = t->c->first; e < t->c->first + t->c->n; ++e)
         C[(first + i) * dofs + s->node[e] * s->dim + d] += s->N[e] * rate;
     }

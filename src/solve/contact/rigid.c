@@ -1,12 +1,7 @@
 #include "solve/contact/rigid.h"
+#include "base/math/vector.h"
 #include "base/math/tensor.h"
 #include <math.h>
-
-static void cross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
-{
-  const PetscReal r[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  for (int d = 0; d < 3; ++d) c[d] = r[d];
-}
 
 static void turn(const PetscReal R[9], const PetscReal V[3], PetscReal v[3])
 {
@@ -38,8 +33,8 @@ static void turn_by(const PetscReal theta[3], const PetscReal r[3], PetscReal tu
 {
   PetscReal once[3], twice[3], f[2];
   turn_factors(size_of(theta), f, f + 1);
-  cross(theta, r, once);
-  cross(theta, once, twice);
+  vector_cross(theta, r, once);
+  vector_cross(theta, once, twice);
   for (int d = 0; d < 3; ++d) turned[d] = r[d] + f[0] * once[d] + f[1] * twice[d];
 }
 
@@ -112,8 +107,8 @@ void rigid_turns(const RigidWall *b, int axis, PetscReal a[3])
   PetscReal once[3], twice[3], f[2];
   turn_factors(size, f, f + 1);
   const PetscReal third = size > 1e-3 ? (1 - f[0]) / (size * size) : 1. / 6 - size * size / 120;
-  cross(theta, unit, once);
-  cross(theta, once, twice);
+  vector_cross(theta, unit, once);
+  vector_cross(theta, once, twice);
   for (int d = 0; d < 3; ++d) a[d] = unit[d] + f[1] * once[d] + third * twice[d];
 }
 
@@ -128,7 +123,7 @@ void rigid_sweep(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3
 {
   PetscReal lever[3];
   rigid_lever(b, x0, x1, lever);
-  cross(b->q + 3, lever, swept);
+  vector_cross(b->q + 3, lever, swept);
   for (int d = 0; d < 3; ++d) swept[d] += b->q[d];
 }
 
@@ -136,7 +131,7 @@ void rigid_velocity(const RigidWall *b, const PetscReal arm[3], PetscReal v[3])
 {
   PetscReal omega[3];
   spin_of(b, b->now.R, b->now.L, omega);
-  cross(omega, arm, v);
+  vector_cross(omega, arm, v);
   for (int d = 0; d < 3; ++d) v[d] += b->now.v[d];
 }
 

@@ -1,4 +1,5 @@
 #include "wall/facets/facets.h"
+#include "base/math/vector.h"
 #include <math.h>
 
 /* The nearest position of a facet: in its face, or on corner 0 1 2 or on edge 3 + (0 1 2). */
@@ -17,11 +18,6 @@ typedef struct {
   Foot nearest;
 } Probe;
 
-static inline PetscReal dot(const PetscReal a[3], const PetscReal b[3])
-{
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static inline void difference(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
 {
   for (int d = 0; d < 3; ++d) c[d] = a[d] - b[d];
@@ -32,7 +28,7 @@ static void foot_on_segment(const PetscReal corner[3][3], const PetscReal x[3], 
   PetscReal e[3], v[3];
   difference(corner[1], corner[0], e);
   difference(x, corner[0], v);
-  const PetscReal s = dot(v, e) / dot(e, e);
+  const PetscReal s = vector_dot(v, e) / vector_dot(e, e);
   foot->feature = s <= 0 ? 0 : s >= 1 ? 1 : FACE;
   for (int d = 0; d < 3; ++d) foot->at[d] = s <= 0 ? corner[0][d] : s >= 1 ? corner[1][d] : corner[0][d] + s * e[d];
 }
@@ -45,16 +41,16 @@ static int nearest_weights(const PetscReal corner[3][3], const PetscReal x[3], P
   difference(corner[1], corner[0], ab);
   difference(corner[2], corner[0], ac);
   difference(x, corner[0], v);
-  const PetscReal a1 = dot(ab, v), a2 = dot(ac, v);
+  const PetscReal a1 = vector_dot(ab, v), a2 = vector_dot(ac, v);
   w[0] = w[1] = w[2] = 0;
   if (a1 <= 0 && a2 <= 0) return w[0] = 1, 0;
   difference(x, corner[1], v);
-  const PetscReal b1 = dot(ab, v), b2 = dot(ac, v);
+  const PetscReal b1 = vector_dot(ab, v), b2 = vector_dot(ac, v);
   if (b1 >= 0 && b2 <= b1) return w[1] = 1, 1;
   const PetscReal vc = a1 * b2 - b1 * a2;
   if (vc <= 0 && a1 >= 0 && b1 <= 0) return w[1] = a1 / (a1 - b1), w[0] = 1 - w[1], EDGE;
   difference(x, corner[2], v);
-  const PetscReal c1 = dot(ab, v), c2 = dot(ac, v);
+  const PetscReal c1 = vector_dot(ab, v), c2 = vector_dot(ac, v);
   if (c2 >= 0 && c1 <= c2) return w[2] = 1, 2;
   const PetscReal vb = c1 * a2 - a1 * c2;
   if (vb <= 0 && a2 >= 0 && c2 <= 0) return w[2] = a2 / (a2 - c2), w[0] = 1 - w[2], EDGE + 2;
@@ -81,7 +77,7 @@ static PetscReal probe_facet(void *context, PetscInt i)
   if (f->dim == 2) foot_on_segment((const PetscReal(*)[3])f->corner[i], probe->x, &foot);
   else foot_on_triangle((const PetscReal(*)[3])f->corner[i], probe->x, &foot);
   difference(probe->x, foot.at, v);
-  foot.square = dot(v, v);
+  foot.square = vector_dot(v, v);
   if (foot.square < probe->nearest.square) probe->nearest = foot;
   return foot.square;
 }
@@ -102,7 +98,7 @@ static Nearness nearness(const Facets *f, const Foot *foot, const PetscReal x[3]
                            : !f->edge_rim[f->edge[foot->facet][foot->feature - EDGE]])
     return NEAR;
   difference(x, foot->at, v);
-  return PetscSqr(dot(v, n)) > PetscSqr(RIM_COSINE) * foot->square ? NEAR_OVER_RIM : NEAR_RIM;
+  return PetscSqr(vector_dot(v, n)) > PetscSqr(RIM_COSINE) * foot->square ? NEAR_OVER_RIM : NEAR_RIM;
 }
 
 /* The distance from a corner has the Hessian (1 - n n) / r, from an edge along t
@@ -115,7 +111,7 @@ static void curve(const Facets *f, const Foot *foot, WallPlace *place)
     const PetscReal(*corner)[3] = (const PetscReal(*)[3])f->corner[foot->facet];
     const int k = foot->feature - EDGE;
     difference(corner[(k + 1) % 3], corner[k], t);
-    const PetscReal length = PetscSqrtReal(dot(t, t));
+    const PetscReal length = PetscSqrtReal(vector_dot(t, t));
     for (int d = 0; d < 3; ++d) t[d] /= length;
   }
   for (int i = 0; i < f->dim; ++i)
@@ -127,7 +123,7 @@ static void describe(const Facets *f, const Foot *foot, const PetscReal x[3], Wa
   const PetscReal *normal = feature_normal(f, foot);
   PetscReal v[3];
   difference(x, foot->at, v);
-  const PetscReal along = dot(v, normal), distance = PetscSqrtReal(foot->square);
+  const PetscReal along = vector_dot(v, normal), distance = PetscSqrtReal(foot->square);
   *place = (WallPlace){.gap = along < 0 ? -distance : distance};
   /* On the feature itself, where its distance has no direction, and in a face. */
   const PetscBool flat = foot->feature == FACE || distance <= 1e-12 * (f->bounds[3] - f->bounds[0] + f->bounds[4] -
@@ -200,7 +196,7 @@ static PetscReal gather_facet(void *context, PetscInt i)
   PetscReal v[3];
   WallPlace place = {.gap = 0};
   difference(all->probe.x, f->corner[i][0], v);
-  place.gap = all->flip * dot(v, f->normal[i]);
+  place.gap = all->flip * vector_dot(v, f->normal[i]);
   for (int d = 0; d < 3; ++d) place.normal[d] = all->flip * f->normal[i][d];
   if (place.gap <= 0 || place.gap > all->within || sides_have(all->sides, &place)) return PETSC_MAX_REAL;
   all->probe.nearest.square = PETSC_MAX_REAL;

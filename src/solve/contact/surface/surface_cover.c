@@ -28,13 +28,13 @@ static Tangents tangents_of(PetscInt dim, const SurfacePoint *p, const PetscReal
   PetscReal *u = t.along[0], *v = t.along[1], flattest = PETSC_MAX_REAL;
   if (dim == 2) return t;
   for (int k = 0; k < 3; ++k) {
-    const PetscReal axis[3] = {p->F[k], p->F[3 + k], p->F[6 + k]}, length = PetscSqrtReal(dot(axis, axis));
-    const PetscReal off = dot(axis, n), square = PetscSqr(off / length);
+    const PetscReal axis[3] = {p->F[k], p->F[3 + k], p->F[6 + k]}, length = PetscSqrtReal(vector_dot(axis, axis));
+    const PetscReal off = vector_dot(axis, n), square = PetscSqr(off / length);
     if (square >= flattest) continue;
     flattest = square;
     for (int i = 0; i < 3; ++i) u[i] = (axis[i] - off * n[i]) / (length * PetscSqrtReal(1 - square));
   }
-  for (int i = 0; i < 3; ++i) v[i] = n[(i + 1) % 3] * u[(i + 2) % 3] - n[(i + 2) % 3] * u[(i + 1) % 3];
+  vector_cross(n, u, v);
   return t;
 }
 
@@ -42,7 +42,7 @@ static Tangents tangents_of(PetscInt dim, const SurfacePoint *p, const PetscReal
 static PetscReal offset(const SurfacePoint *p, const SurfacePoint *q, const PetscReal u[3])
 {
   const PetscReal r[3] = {q->x[0] - p->x[0], q->x[1] - p->x[1], q->x[2] - p->x[2]};
-  return dot(r, u);
+  return vector_dot(r, u);
 }
 
 /* Do the two stand in one row along tangent k, but for so much? */
@@ -55,8 +55,8 @@ static PetscBool in_row(const SurfacePoint *p, const SurfacePoint *q, const Tang
  * beside, as that has gone since; else half of its part. */
 static PetscReal end_of(const SurfacePoint *p, const PetscReal u[3], int side)
 {
-  const PetscReal *F = p->F, *c = p->corner, gone[3] = {dot(F, c), dot(F + 3, c), dot(F + 6, c)};
-  const PetscReal aside = side * dot(gone, u);
+  const PetscReal *F = p->F, *c = p->corner, gone[3] = {vector_dot(F, c), vector_dot(F + 3, c), vector_dot(F + 6, c)};
+  const PetscReal aside = side * vector_dot(gone, u);
   return aside > BESIDE * p->size ? aside : 0.5 * p->size;
 }
 

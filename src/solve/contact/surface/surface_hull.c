@@ -17,14 +17,6 @@ typedef struct {
   PetscReal corner[3][3];
 } Simplex;
 
-static void cross(const PetscReal a[3], const PetscReal b[3], PetscReal out[3])
-{
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    out[i] = a[j] * b[k] - a[k] * b[j];
-  }
-}
-
 /* The point of the hull that is farthest along the unit vector d; the part holds some. */
 static void farthest(const Part *part, const PetscReal d[3], PetscReal out[3])
 {
@@ -32,7 +24,7 @@ static void farthest(const Part *part, const PetscReal d[3], PetscReal out[3])
   PetscReal most = -PETSC_MAX_REAL;
   for (PetscInt k = 0; k < part->n; ++k) {
     const SurfacePoint *s = part->point[k];
-    const PetscReal height = dot(s->x, d) + s->reach - part->least;
+    const PetscReal height = vector_dot(s->x, d) + s->reach - part->least;
     if (height > most) most = height, best = s;
   }
   const PetscReal wider = best->reach - part->least;
@@ -52,16 +44,16 @@ static void corner_against(const Part *a, const Part *b, const PetscReal n[3], P
 /* The unit vector along v away from the origin, as seen from w, and how far w is along it. */
 static PetscReal look_along(const PetscReal v[3], const PetscReal w[3], PetscReal n[3])
 {
-  const PetscReal length = PetscSqrtReal(dot(v, v)), scale = (dot(v, w) < 0 ? -1 : 1) / length;
+  const PetscReal length = PetscSqrtReal(vector_dot(v, v)), scale = (vector_dot(v, w) < 0 ? -1 : 1) / length;
   if (length == 0) return 0;
   for (int i = 0; i < 3; ++i) n[i] = scale * v[i];
-  return dot(n, w);
+  return vector_dot(n, w);
 }
 
 /* Nearest place to the origin on the way from w to another corner; PETSC_FALSE: it is an end. */
 static PetscBool on_way(PetscInt dim, const PetscReal w[3], const PetscReal *a, PetscReal v[3])
 {
-  const PetscReal e[3] = {a[0] - w[0], a[1] - w[1], a[2] - w[2]}, square = dot(e, e), t = -dot(w, e);
+  const PetscReal e[3] = {a[0] - w[0], a[1] - w[1], a[2] - w[2]}, square = vector_dot(e, e), t = -vector_dot(w, e);
   if (t <= 0 || t >= square) return PETSC_FALSE;
   for (int i = 0; i < 3; ++i) v[i] = w[i] + t / square * e[i];
   if (dim == 2) v[0] = -e[1], v[1] = e[0]; /* whatever the distance is, that is exact */
@@ -74,9 +66,10 @@ static PetscBool on_triangle(const PetscReal w[3], const PetscReal *const other[
   PetscReal e[2][3];
   for (int k = 0; k < 2; ++k)
     for (int i = 0; i < 3; ++i) e[k][i] = other[k][i] - w[i];
-  cross(e[0], e[1], v);
-  const PetscReal a = dot(e[0], e[0]), b = dot(e[0], e[1]), c = dot(e[1], e[1]), square = dot(v, v);
-  const PetscReal p = -dot(w, e[0]), q = -dot(w, e[1]), s = c * p - b * q, t = a * q - b * p;
+  vector_cross(e[0], e[1], v);
+  const PetscReal a = vector_dot(e[0], e[0]), b = vector_dot(e[0], e[1]), c = vector_dot(e[1], e[1]),
+                  square = vector_dot(v, v);
+  const PetscReal p = -vector_dot(w, e[0]), q = -vector_dot(w, e[1]), s = c * p - b * q, t = a * q - b * p;
   return (PetscBool)(square > THIN * a * c && s > 0 && t > 0 && s + t < square);
 }
 
@@ -115,8 +108,8 @@ static PetscBool holds_origin(PetscInt dim, const Simplex *s, const PetscReal w[
     PetscInt m = 0;
     for (PetscInt j = 0; j <= dim; ++j)
       if (j != k) face[m++] = j < dim ? s->corner[j] : w;
-    cross(face[0], face[1], across);
-    const PetscReal turn = dim == 2 ? across[2] : dot(across, face[2]);
+    vector_cross(face[0], face[1], across);
+    const PetscReal turn = dim == 2 ? across[2] : vector_dot(across, face[2]);
     left += (k % 2 ? -turn : turn) > 0 ? 1 : -1;
   }
   return (PetscBool)(left == dim + 1 || left == -dim - 1);
@@ -132,12 +125,12 @@ static PetscBool separate(const Part *a, const PetscReal moved[3], const Part *b
     PetscReal w[3], way[3] = {0, 0, 0};
     corner_against(a, b, n, w);
     for (int i = 0; i < 3; ++i) w[i] += moved[i];
-    height = dot(w, n);
+    height = vector_dot(w, n);
     if (s.n && length - height <= FLAT * length) break;
     if (s.n == a->dim && height <= 0 && holds_origin(a->dim, &s, w)) return PETSC_FALSE;
     const PetscInt corners = s.n;
     const PetscReal now = nearest_between(a->dim, w, &s, way);
-    if (now <= TOUCH * PetscSqrtReal(dot(w, w))) return PETSC_FALSE;
+    if (now <= TOUCH * PetscSqrtReal(vector_dot(w, w))) return PETSC_FALSE;
     if (now >= (s.n > corners ? 1 + SAME : 1 - SAME) * length) break;
     length = now;
     for (int i = 0; i < 3; ++i) n[i] = way[i];
@@ -150,7 +143,7 @@ static PetscReal overlap(const Part *a, const Part *b, const PetscReal n[3])
 {
   PetscReal w[3];
   corner_against(a, b, n, w);
-  return -dot(w, n);
+  return -vector_dot(w, n);
 }
 
 /* Way k of so many, well spread: in space a spiral over the ball, by the golden angle. */

@@ -1,5 +1,6 @@
 /* Parts of bodies around a place, and the way between their convex hulls. */
 #pragma once
+#include "base/math/vector.h"
 #include "solve/contact/surface/surface.h"
 
 #define PART_MOST 2048
@@ -10,8 +11,6 @@ typedef struct {
   PetscReal least;
   const SurfacePoint *point[PART_MOST];
 } Part;
-
-static inline PetscReal dot(const PetscReal *a, const PetscReal *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 static inline void part_begin(Part *part, PetscInt dim)
 {

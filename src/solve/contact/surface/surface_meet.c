@@ -60,9 +60,9 @@ static void offset(const SurfacePoint *p, const SurfacePoint *q, const PetscReal
                    PetscReal *across)
 {
   const PetscReal r[3] = {p->x[0] - q->x[0], p->x[1] - q->x[1], p->x[2] - q->x[2]};
-  *along = dot(r, n);
+  *along = vector_dot(r, n);
   const PetscReal aside[3] = {r[0] - *along * n[0], r[1] - *along * n[1], r[2] - *along * n[2]};
-  *across = PetscSqrtReal(dot(aside, aside));
+  *across = PetscSqrtReal(vector_dot(aside, aside));
 }
 
 /* Does another point of its body stand before p? */
@@ -110,7 +110,7 @@ static PetscBool clear_front(const Part *part, const SurfacePoint *q, const Pets
   part_begin(clear, part->dim);
   for (PetscInt k = 0; k < part->n; ++k) {
     const PetscReal *x = part->point[k]->x, r[3] = {x[0] - o[0], x[1] - o[1], x[2] - o[2]};
-    if (dot(r, n) <= IN_FRONT * q->size) part_add(clear, part->point[k]);
+    if (vector_dot(r, n) <= IN_FRONT * q->size) part_add(clear, part->point[k]);
   }
   return (PetscBool)(clear->n < part->n);
 }
