@@ -203,12 +203,11 @@ PetscErrorCode BoundaryRegrid(Boundary **boundary, const Grid *grid)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, const unsigned char *marked, Grid *cloud,
-                               Boundary **boundary)
+PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, Grid *cloud, Boundary **boundary)
 {
   const PetscInt n_entries = count_entries(of_mesh);
   Boundary *b;
-  PetscInt *local;
+  unsigned char *there; /* of an entry */
 
   PetscFunctionBeginUser;
   PetscCall(PetscNew(&b));
@@ -216,15 +215,15 @@ PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, const 
   b->dim = cloud->dim;
   PetscCall(PetscCalloc1(n_entries, &b->motion));
   PetscCall(PetscCalloc1(cloud->n_nodes * n_entries, &b->member));
-  PetscCall(PetscMalloc1(mesh->n_owned, &local));
-  for (PetscInt i = 0, n = 0; i < mesh->n_owned; ++i) local[i] = marked[i] ? n++ : -1;
-  for (PetscInt k = 0; k < n_entries; ++k) b->motion[k].faces = of_mesh->motion[k].faces;
-  for (PetscInt k = 0; k < n_entries; ++k)
-    for (PetscInt i = 0; i < of_mesh->motion[k].n; ++i) {
-      const PetscInt node = of_mesh->motion[k].node[i];
-      if (node < mesh->n_owned && local[node] >= 0) b->member[local[node] * n_entries + k] = 1;
-    }
-  PetscCall(PetscFree(local));
+  PetscCall(PetscMalloc1(mesh->n_nodes, &there));
+  for (PetscInt k = 0; k < n_entries; ++k) {
+    b->motion[k].faces = of_mesh->motion[k].faces;
+    PetscCall(PetscArrayzero(there, mesh->n_nodes));
+    for (PetscInt i = 0; i < of_mesh->motion[k].n; ++i) there[of_mesh->motion[k].node[i]] = 1;
+    for (PetscInt i = 0; i < cloud->n_owned; ++i)
+      if (!cloud_is_twin(cloud, i)) b->member[i * n_entries + k] = there[cloud_origin(cloud, mesh, i)];
+  }
+  PetscCall(PetscFree(there));
   PetscCall(GridCloudFollow(cloud, (CloudField){&b->member, n_entries, "member", NULL, PETSC_FALSE}));
   PetscCall(BoundaryFollow(b, cloud));
   *boundary = b;

@@ -46,10 +46,8 @@ typedef struct Boundary {
 /* Collective. Unknown boundaries, entries that select nothing, and contradictory entries go to
  * diag. */
 PetscErrorCode BoundaryCreate(const Grid *grid, const Case *c, Diag *diag, Boundary **boundary);
-/* Collective. Carry a boundary of the mesh over to the cloud made of its owned nodes with
- * marked[node]. */
-PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, const unsigned char *marked, Grid *cloud,
-                               Boundary **boundary);
+/* Collective. Carry a boundary of the mesh over to the cloud that has just been made of its owned nodes. */
+PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, Grid *cloud, Boundary **boundary);
 /* Lists and marks anew from `member`, after the cloud's ghosts or owners changed. */
 PetscErrorCode BoundaryFollow(Boundary *boundary, const Grid *cloud);
 /* Collective. The same boundary on `grid`, which is the grid that it was made for, shared among the

@@ -20,7 +20,7 @@ typedef struct {
   const BasisSpec *spec;
   const Grid *grid;
   PetscBool hoop;          /* see Kinematics */
-  const Neighbours *nodes; /* of clouds: the nodes by their places */
+  const Neighbours *nodes; /* of clouds: the nodes by their places, of each velocity field */
   /* do the points stand on the hull of all nodes, as nodes themselves and carriers of loads do? */
   PetscBool on_hull;
   /* of a box, for a basis that ends at held nodes: per node, bit d where along axis d what the boundary holds

@@ -123,8 +123,8 @@ PetscErrorCode SupportFromClouds(Support *s, const Points *points, const Neighbo
     s->point_start[p] = p;
     s->node_start[p] = s->value_start[p] = entries;
     if (has_F) point_F(points, p, F);
-    entries += cloud_at(nodes, rule, points->real[POINT_X] + (size_t)p * (size_t)dim, has_F ? F : NULL,
-                        s->node + entries, s->N + entries, s->dN + entries * dim, &s->tally);
+    entries += cloud_at(nodes + point_field(points, p), rule, points->real[POINT_X] + (size_t)p * (size_t)dim,
+                        has_F ? F : NULL, s->node + entries, s->N + entries, s->dN + entries * dim, &s->tally);
   }
   s->point_start[n] = n;
   s->node_start[n] = s->value_start[n] = entries;

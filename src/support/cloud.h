@@ -10,8 +10,9 @@ typedef struct {
   PetscReal h; /* m: unit of their lengths */
 } CloudRule;
 
-/* A cloud for each point, as a group of its own; nodes are numbered as in `nodes`. Points without a
- * node near have an empty group. Of the points their places count, and F if they have one. */
+/* A cloud for each point, as a group of its own; nodes are numbered as in `nodes`, one for each velocity
+ * field. Points without a node near have an empty group. Of the points their places count, their field, and F if they
+ * have one. */
 PetscErrorCode SupportFromClouds(Support *support, const Points *points, const Neighbours *nodes,
                                  const CloudRule *rule);
 /* The cloud of one position: node and N have room for CLOUD_MAX_NODES, dN for dim times that;

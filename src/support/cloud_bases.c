@@ -70,8 +70,8 @@ static PetscErrorCode CloudCouplings(const BasisInput *in, const BasisSites *sit
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < now->n_groups; ++p) {
     const PetscInt nn = support_nodes(now, p);
-    PetscInt n = neighbours_within(in->nodes, point_real(sites->points, POINT_X, p), wide_radius(in, sites, p),
-                                   CLOUD_MAX_NODES, node, distance2);
+    PetscInt n = neighbours_within(in->nodes + point_field(sites->points, p), point_real(sites->points, POINT_X, p),
+                                   wide_radius(in, sites, p), CLOUD_MAX_NODES, node, distance2);
     PetscCall(PetscArraycpy(node + n, now->node + now->node_start[p], nn));
     n += nn;
     PetscCall(PetscSortRemoveDupsInt(&n, node));

@@ -2,12 +2,8 @@
  * that hold where shape functions do not interpolate, reactions, free flight, turning, contact, and
  * the same answers on one rank and on many, also when nodes and points change their ranks. */
 #include "case_builder.h"
+#include "clouds.h"
 #include "method/gmm/gmm.h"
-
-static const BasisSpec usual_lme = {
-  .kind = "lme", .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
-static const BasisSpec usual_mls = {
-  .kind = "mls", .effective_radius = 1, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
 
 static void gmm_init(Bench *b, const BasisSpec *basis, CellType cell, PetscReal size)
 {

@@ -20,6 +20,7 @@ static PetscErrorCode Destroy(Grid *grid)
   PetscCall(PetscFree((*cloud)->id));
   PetscCall(PetscFree((*cloud)->x0));
   PetscCall(PetscFree((*cloud)->obstacle));
+  PetscCall(PetscFree((*cloud)->motion));
   PetscCall(PetscFree((*cloud)->ghost_rank));
   PetscCall(PetscFree((*cloud)->ghost_index));
   PetscCall(PetscFree(*cloud));
@@ -82,25 +83,52 @@ static PetscErrorCode Connect(Grid *grid)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Populate(const Grid *mesh, const unsigned char *marked, const unsigned char *twin, Grid *g)
+/* How often a node of the mesh comes, twins aside. */
+static PetscInt copies_of(const CloudSource *source, PetscInt i)
 {
-  const PetscInt dim = mesh->dim;
+  if (!source->marked[i]) return 0;
+  return source->motion && source->motion[i] < 0 ? source->n_motions : 1;
+}
+
+/* Nodes, and then twins, those of one field behind those of the one before where they come more than once. */
+static void populate(const Grid *mesh, const CloudSource *source, Grid *g)
+{
+  const PetscInt dim = mesh->dim, all = mesh->n_nodes_global;
+  GridCloud *c = g->cloud;
   PetscInt n = 0;
+  for (int second = 0; second < 2; ++second)
+    for (PetscInt k = 0; k < source->n_motions; ++k)
+      for (PetscInt i = 0; i < mesh->n_owned; ++i) {
+        if (k >= copies_of(source, i) || (second && !source->twin[i])) continue;
+        c->id[n] = mesh->global_node[i] + k * all + (second ? c->first_twin : 0);
+        c->obstacle[n] = source->marked[i] == CLOUD_OBSTACLE;
+        if (c->motion) c->motion[n] = (PetscReal)(source->motion[i] < 0 ? k : source->motion[i]);
+        for (PetscInt d = 0; d < dim; ++d) g->x[n * dim + d] = c->x0[n * dim + d] = mesh->x[i * dim + d];
+        ++n;
+      }
+}
+
+/* Its arrays, and those that follow its nodes. */
+static PetscErrorCode Allocate(Grid *g)
+{
+  GridCloud *c = g->cloud;
 
   PetscFunctionBeginUser;
-  for (int second = 0; second < 2; ++second)
-    for (PetscInt i = 0; i < mesh->n_owned; ++i) {
-      if (!marked[i] || (second && !twin[i])) continue;
-      g->cloud->id[n] = mesh->global_node[i] + (second ? mesh->n_nodes_global : 0);
-      g->cloud->obstacle[n] = marked[i] == CLOUD_OBSTACLE;
-      for (PetscInt d = 0; d < dim; ++d) g->x[n * dim + d] = g->cloud->x0[n * dim + d] = mesh->x[i * dim + d];
-      ++n;
-    }
+  PetscCall(PetscMalloc1(g->n_nodes * g->dim, &g->x));
+  PetscCall(PetscMalloc1(g->n_nodes * g->dim, &c->x0));
+  PetscCall(PetscMalloc1(g->n_nodes, &c->obstacle));
+  PetscCall(PetscMalloc1(g->n_nodes, &c->id));
+  PetscCall(PetscMalloc1(g->n_nodes, &g->global_node));
+  PetscCall(GridCloudFollow(g, (CloudField){&g->x, g->dim, "position", "m", PETSC_FALSE}));
+  PetscCall(GridCloudFollow(g, (CloudField){&c->x0, g->dim, "position_at_start", "m", PETSC_FALSE}));
+  PetscCall(GridCloudFollow(g, (CloudField){&c->obstacle, 1, "obstacle", NULL, PETSC_FALSE}));
+  if (c->n_motions == 1) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(g->n_nodes, &c->motion));
+  PetscCall(GridCloudFollow(g, (CloudField){&c->motion, 1, "velocity_field", NULL, PETSC_FALSE}));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsigned char *marked,
-                               const unsigned char *twin, Grid **cloud)
+PetscErrorCode GridCreateCloud(const Grid *mesh, const CloudSource *source, Grid **cloud)
 {
   Grid *g;
   PetscMPIInt size;
@@ -116,22 +144,16 @@ PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsign
   g->smallest = mesh->smallest;
   PetscCall(PetscArraycpy(g->min, mesh->min, 3));
   PetscCall(PetscArraycpy(g->max, mesh->max, 3));
-  for (PetscInt i = 0; i < mesh->n_owned; ++i) g->n_owned += marked[i] ? 1 + (twin[i] != 0) : 0;
+  for (PetscInt i = 0; i < mesh->n_owned; ++i) g->n_owned += copies_of(source, i) * (1 + (source->twin[i] != 0));
   g->n_nodes = g->n_owned;
-  g->cloud->first_twin = mesh->n_nodes_global;
-  g->cloud->spacing = spacing;
+  g->cloud->n_motions = source->n_motions;
+  g->cloud->first_twin = source->n_motions * mesh->n_nodes_global;
+  g->cloud->spacing = source->spacing;
   g->cloud->n_cells_left = mesh->n_cells_global;
-  PetscCall(PetscMalloc1(g->n_nodes * g->dim, &g->x));
-  PetscCall(PetscMalloc1(g->n_nodes * g->dim, &g->cloud->x0));
-  PetscCall(PetscMalloc1(g->n_nodes, &g->cloud->obstacle));
-  PetscCall(PetscMalloc1(g->n_nodes, &g->cloud->id));
-  PetscCall(PetscMalloc1(g->n_nodes, &g->global_node));
-  PetscCall(Populate(mesh, marked, twin, g));
+  PetscCall(Allocate(g));
+  populate(mesh, source, g);
   PetscCall(CountOwned(g));
   PetscCall(Connect(g));
-  PetscCall(GridCloudFollow(g, (CloudField){&g->x, g->dim, "position", "m", PETSC_FALSE}));
-  PetscCall(GridCloudFollow(g, (CloudField){&g->cloud->x0, g->dim, "position_at_start", "m", PETSC_FALSE}));
-  PetscCall(GridCloudFollow(g, (CloudField){&g->cloud->obstacle, 1, "obstacle", NULL, PETSC_FALSE}));
   *cloud = g;
   PetscFunctionReturn(0);
 }

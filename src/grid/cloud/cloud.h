@@ -27,6 +27,9 @@ typedef struct GridCloud {
   PetscReal *x0;       /* n_nodes x dim: positions at the start, m */
   /* n_nodes: 1 if the node was prescribed at the start and no cell with material had it; else 0 */
   PetscReal *obstacle;
+  /* Velocity fields: points find their nodes among those of their own alone; 1 where no bodies meet. */
+  PetscInt n_motions;
+  PetscReal *motion; /* n_nodes: the field of each; NULL: there is one */
   PetscInt n_fields;
   CloudField field[CLOUD_MAX_FIELDS];
   PetscMPIInt *ghost_rank;  /* of each ghost: its owner, */
@@ -41,22 +44,40 @@ typedef struct {
   PetscInt n;
   PetscMPIInt *rank;
   PetscInt *index;
-  PetscReal *x; /* n x dim */
+  PetscInt *field; /* velocity field */
+  PetscReal *x;    /* n x dim */
 } RemoteNodes;
+
+/* What of a mesh becomes a cloud, for each of its owned nodes. */
+typedef struct {
+  PetscReal spacing;           /* of the cloud */
+  const unsigned char *marked; /* CLOUD_BODY, or CLOUD_OBSTACLE; 0: it is left out */
+  /* It gets a twin: a second node at the same place that carries the multipliers of a constraint and never is a
+   * neighbour. */
+  const unsigned char *twin;
+  PetscInt n_motions;     /* velocity fields, */
+  const PetscInt *motion; /* and that of each node, -1: it comes once in each field; NULL: there is one */
+} CloudSource;
 
 /* Collective. Spacing of nodes in the cells listed (of all ranks, each counted as often as it is
  * listed): the edge of a square or cube of their mean volume, of which a triangle is half and a
  * tetrahedron a sixth; on a box of equal cells its cell size. */
 PetscErrorCode GridSpacing(const Grid *mesh, PetscInt n, const PetscInt *cell, PetscReal *spacing);
-/* Collective. The cloud of the owned nodes of a mesh that are marked (CLOUD_BODY, or
- * CLOUD_OBSTACLE); where twin[node] is set it gets a twin: a second node at the same place that
- * carries the multipliers of a constraint and never is a neighbour. */
-PetscErrorCode GridCreateCloud(const Grid *mesh, PetscReal spacing, const unsigned char *marked,
-                               const unsigned char *twin, Grid **cloud);
+/* Collective. The cloud of the owned nodes of a mesh that are marked. */
+PetscErrorCode GridCreateCloud(const Grid *mesh, const CloudSource *source, Grid **cloud);
 
 static inline PetscBool cloud_is_twin(const Grid *grid, PetscInt node)
 {
   return grid->cloud->id[node] >= grid->cloud->first_twin;
+}
+/* As long as owned nodes stand as they were made: the local node of the mesh that one of them came from. */
+static inline PetscInt cloud_origin(const Grid *grid, const Grid *mesh, PetscInt node)
+{
+  return grid->cloud->id[node] % mesh->n_nodes_global - mesh->global_node[0];
+}
+static inline PetscInt cloud_motion(const Grid *grid, PetscInt node)
+{
+  return grid->cloud->motion ? (PetscInt)grid->cloud->motion[node] : 0;
 }
 
 /* Let *field.data (n_nodes x components, from PetscMalloc1) follow the nodes; without a name its contents

@@ -6,7 +6,7 @@
 /* A node in flight. */
 typedef struct {
   PetscReal x[3];
-  PetscInt64 index;
+  PetscInt64 index, field;
 } Flight;
 
 static PetscBool in_box(PetscInt dim, const PetscReal *x, const PetscReal box[6])
@@ -30,7 +30,7 @@ static void list_nodes(const Grid *grid, PetscMPIInt rank, PetscMPIInt size, Pet
         continue;
       }
       Flight *c = &out[next[slot[r]]++];
-      *c = (Flight){.index = i};
+      *c = (Flight){.index = i, .field = cloud_motion(grid, i)};
       for (PetscInt d = 0; d < grid->dim; ++d) c->x[d] = grid->x[i * grid->dim + d];
     }
   }
@@ -40,11 +40,12 @@ static PetscErrorCode Receive(const Grid *grid, const Exchange *e, const Flight 
 {
   PetscFunctionBeginUser;
   const PetscInt n = remote->n = e->from_start[e->n_from];
-  PetscCall(PetscMalloc3(n, &remote->rank, n, &remote->index, n * grid->dim, &remote->x));
+  PetscCall(PetscMalloc4(n, &remote->rank, n, &remote->index, n, &remote->field, n * grid->dim, &remote->x));
   for (PetscMPIInt m = 0; m < e->n_from; ++m)
     for (PetscInt k = e->from_start[m]; k < e->from_start[m + 1]; ++k) {
       remote->rank[k] = e->from[m];
       remote->index[k] = (PetscInt)in[k].index;
+      remote->field[k] = (PetscInt)in[k].field;
       for (PetscInt d = 0; d < grid->dim; ++d) remote->x[k * grid->dim + d] = in[k].x[d];
     }
   PetscFunctionReturn(0);
@@ -85,7 +86,7 @@ PetscErrorCode GridCloudRemote(const Grid *grid, const PetscReal box[6], RemoteN
 PetscErrorCode GridCloudRemoteDestroy(RemoteNodes *remote)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree3(remote->rank, remote->index, remote->x));
+  PetscCall(PetscFree4(remote->rank, remote->index, remote->field, remote->x));
   remote->n = 0;
   PetscFunctionReturn(0);
 }

@@ -30,18 +30,15 @@ static inline PetscInt bin_of(const Neighbours *b, const PetscReal *x)
   return bin;
 }
 
-static inline PetscBool is_taken(const unsigned char *skip, PetscInt n, PetscInt i)
-{
-  return !skip || i >= n || !skip[i];
-}
+static inline PetscBool is_taken(const unsigned char *skip, PetscInt i) { return !skip || !skip[i]; }
 
 /* Bounds of the positions taken; returns how many there are. */
-static PetscInt bounds_of(PetscInt dim, PetscInt n, PetscInt n_all, const PetscReal *at, const unsigned char *skip,
-                          PetscReal min[3], PetscReal max[3])
+static PetscInt bounds_of(PetscInt dim, PetscInt n, const PetscReal *at, const unsigned char *skip, PetscReal min[3],
+                          PetscReal max[3])
 {
   PetscInt taken = 0;
-  for (PetscInt i = 0; i < n_all; ++i) {
-    if (!is_taken(skip, n, i)) continue;
+  for (PetscInt i = 0; i < n; ++i) {
+    if (!is_taken(skip, i)) continue;
     for (PetscInt d = 0; d < dim; ++d) {
       min[d] = taken ? PetscMin(min[d], at[i * dim + d]) : at[i * dim + d];
       max[d] = taken ? PetscMax(max[d], at[i * dim + d]) : at[i * dim + d];
@@ -62,17 +59,17 @@ PetscErrorCode NeighboursCreate(PetscInt dim, PetscInt n, const PetscReal *x, Pe
   PetscCall(PetscMalloc3(n_all, &b->item, n_all * dim, &b->x, n_all * dim, &b->at));
   PetscCall(PetscArraycpy(b->at, x, n * dim));
   PetscCall(PetscArraycpy(b->at + n * dim, more, n_more * dim));
-  b->n = bounds_of(dim, n, n_all, b->at, skip, min, max);
+  b->n = bounds_of(dim, n_all, b->at, skip, min, max);
   choose_bins(b, b->n, min, max, size);
   const PetscInt bins = b->counts[0] * b->counts[1] * b->counts[2];
   PetscCall(PetscCalloc1(bins + 2, &b->start));
   /* next[k]: first the start of bin k, in the end its end, the start of bin k + 1 */
   PetscInt *next = b->start + 1;
   for (PetscInt i = 0; i < n_all; ++i)
-    if (is_taken(skip, n, i)) ++next[bin_of(b, b->at + i * dim) + 1];
+    if (is_taken(skip, i)) ++next[bin_of(b, b->at + i * dim) + 1];
   for (PetscInt k = 0; k < bins; ++k) next[k + 1] += next[k];
   for (PetscInt i = 0; i < n_all; ++i) {
-    if (!is_taken(skip, n, i)) continue;
+    if (!is_taken(skip, i)) continue;
     const PetscInt place = next[bin_of(b, b->at + i * dim)]++;
     b->item[place] = i;
     for (PetscInt d = 0; d < dim; ++d) b->x[place * dim + d] = b->at[i * dim + d];

@@ -11,8 +11,8 @@ typedef struct {
   PetscReal *at;          /* the positions by their numbers */
 } Neighbours;
 
-/* The first n of the positions, and then more of them (each x dim); those with skip[i] are left out
- * (NULL: none). Bins have an edge of `size` or more. */
+/* The first n of the positions, and then more of them (each x dim); those with skip[i], counted
+ * through both, are left out (NULL: none). Bins have an edge of `size` or more. */
 PetscErrorCode NeighboursCreate(PetscInt dim, PetscInt n, const PetscReal *x, PetscInt n_more, const PetscReal *more,
                                 const unsigned char *skip, PetscReal size, Neighbours *neighbours);
 PetscErrorCode NeighboursDestroy(Neighbours *neighbours);

@@ -1,5 +1,6 @@
 /* What gmm remembers between steps, for this room only. */
 #pragma once
+#include "grid/cloud/cloud.h"
 #include "method/method.h"
 
 typedef struct {
@@ -13,6 +14,21 @@ typedef struct {
 } Gmm;
 
 static inline Gmm *gmm_of(const Discretisation *space) { return space->own; }
+
+/* Places of this rank where bodies may meet others in the step, with the velocity field of the other one. */
+typedef struct {
+  PetscInt n, *field;
+  PetscReal *x; /* n x dim */
+} MeetingPlaces;
+
+/* gmm_meet.c. Collective. On one rank, which knows all nodes, there are none. */
+PetscErrorCode MeetingPlacesFind(const Discretisation *space, MeetingPlaces *places);
+PetscErrorCode MeetingPlacesDestroy(MeetingPlaces *places);
+/* How far from there nodes are that may carry the other body's surface, m. */
+PetscReal meeting_reach(const Discretisation *space);
+/* use[k] for those remote nodes that are within reach of them in the other one's field. */
+PetscErrorCode MeetingPlacesUse(const MeetingPlaces *places, const Discretisation *space, PetscReal reach,
+                                const RemoteNodes *remote, PetscBool *use);
 
 /* Collective. Ghosts, clouds and constraints for where nodes and points are now; touched nodes
  * too. */

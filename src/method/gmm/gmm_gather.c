@@ -11,9 +11,10 @@
  * ranks behind. */
 typedef struct {
   RemoteNodes remote;
-  Neighbours nodes;
-  PetscInt *ghost; /* per candidate: local number, -1 if it is no ghost yet */
-  PetscBool *use;  /* per candidate: does a cloud need it? */
+  MeetingPlaces meeting;
+  Neighbours *nodes; /* of each velocity field */
+  PetscInt *ghost;   /* per candidate: local number, -1 if it is no ghost yet */
+  PetscBool *use;    /* per candidate: does a cloud need it? */
 } Search;
 
 /* The radius aimed at, m. */
@@ -29,7 +30,7 @@ static void widen_box(PetscInt dim, PetscInt n, const PetscReal *x, PetscReal re
 }
 
 /* The box in which this rank's points and nodes look for nodes. */
-static void search_box(const Discretisation *s, PetscReal box[6])
+static void search_box(const Discretisation *s, const MeetingPlaces *meeting, PetscReal box[6])
 {
   const PetscInt dim = s->grid->dim;
   const PetscReal reach = SKIN * PetscMax(radius_of(s), s->c->basis.max_radius * s->grid->cloud->spacing);
@@ -38,33 +39,57 @@ static void search_box(const Discretisation *s, PetscReal box[6])
   widen_box(dim, s->tracers->n, s->tracers->real[POINT_X], reach, box);
   widen_box(dim, s->loads->carriers->n, s->loads->carriers->real[POINT_X], reach, box);
   widen_box(dim, s->grid->n_owned, s->grid->x, reach, box);
+  widen_box(dim, meeting->n, meeting->x, SKIN * meeting_reach(s), box);
+}
+
+/* The first n nodes, and then remote ones, each in the search of its velocity field; twins in none. */
+static PetscErrorCode NodesByField(const Grid *grid, PetscInt n, const RemoteNodes *remote, PetscReal size,
+                                   Neighbours **nodes)
+{
+  unsigned char *skip;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(grid->cloud->n_motions, nodes));
+  PetscCall(PetscMalloc1(n + remote->n, &skip));
+  for (PetscInt f = 0; f < grid->cloud->n_motions; ++f) {
+    for (PetscInt i = 0; i < n; ++i) skip[i] = cloud_is_twin(grid, i) || cloud_motion(grid, i) != f;
+    for (PetscInt k = 0; k < remote->n; ++k) skip[n + k] = remote->field[k] != f;
+    PetscCall(NeighboursCreate(grid->dim, n, grid->x, remote->n, remote->x, skip, size, *nodes + f));
+  }
+  PetscCall(PetscFree(skip));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode NodesByFieldDestroy(const Grid *grid, Neighbours **nodes)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt f = 0; f < grid->cloud->n_motions; ++f) PetscCall(NeighboursDestroy(*nodes + f));
+  PetscCall(PetscFree(*nodes));
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode SearchBegin(const Discretisation *s, Search *search)
 {
   const Grid *grid = s->grid;
   PetscReal box[6];
-  unsigned char *twin;
 
   PetscFunctionBeginUser;
-  search_box(s, box);
+  PetscCall(MeetingPlacesFind(s, &search->meeting));
+  search_box(s, &search->meeting, box);
   PetscCall(GridCloudRemote(grid, box, &search->remote));
   const PetscInt n = search->remote.n;
-  PetscCall(PetscMalloc1(grid->n_owned, &twin));
-  for (PetscInt i = 0; i < grid->n_owned; ++i) twin[i] = cloud_is_twin(grid, i);
-  PetscCall(
-    NeighboursCreate(grid->dim, grid->n_owned, grid->x, n, search->remote.x, twin, radius_of(s), &search->nodes));
-  PetscCall(PetscFree(twin));
+  PetscCall(NodesByField(grid, grid->n_owned, &search->remote, radius_of(s), &search->nodes));
   PetscCall(PetscMalloc1(n, &search->ghost));
   PetscCall(PetscCalloc1(n, &search->use));
   cloud_find_ghosts(grid, &search->remote, search->ghost);
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SearchEnd(Search *search)
+static PetscErrorCode SearchEnd(const Grid *grid, Search *search)
 {
   PetscFunctionBeginUser;
-  PetscCall(NeighboursDestroy(&search->nodes));
+  PetscCall(NodesByFieldDestroy(grid, &search->nodes));
+  PetscCall(MeetingPlacesDestroy(&search->meeting));
   PetscCall(GridCloudRemoteDestroy(&search->remote));
   PetscCall(PetscFree(search->ghost));
   PetscCall(PetscFree(search->use));
@@ -111,10 +136,11 @@ static PetscErrorCode Relayout(Discretisation *s, Search *search)
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < s->points->n; ++p) {
-    const PetscInt n =
-      neighbours_within(&search->nodes, s->points->real[POINT_X] + p * dim, radius, CLOUD_MAX_NODES, near, distance2);
+    const PetscInt n = neighbours_within(search->nodes + point_field(s->points, p), s->points->real[POINT_X] + p * dim,
+                                         radius, CLOUD_MAX_NODES, near, distance2);
     mark_used(s, search, n, near);
   }
+  PetscCall(MeetingPlacesUse(&search->meeting, s, SKIN * meeting_reach(s), &search->remote, search->use));
   PetscCall(GridCloudSetGhosts(s->grid, &search->remote, search->use));
   for (PetscInt k = 0, g = n_owned; k < search->remote.n; ++k) search->ghost[k] = search->use[k] ? g++ : -1;
   PetscFunctionReturn(0);
@@ -152,28 +178,48 @@ static PetscErrorCode Follow(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
+/* Places of nodes, as points of their velocity fields; there is room for so many. */
+static PetscErrorCode PlacesCreate(const Grid *grid, PetscInt n, Points *places)
+{
+  PetscFunctionBeginUser;
+  *places = (Points){.dim = grid->dim, .components[POINT_X] = grid->dim};
+  PetscCall(PetscMalloc1(n * grid->dim, &places->real[POINT_X]));
+  if (grid->cloud->n_motions == 1) PetscFunctionReturn(0);
+  places->components[POINT_FIELD] = 1;
+  PetscCall(PetscMalloc1(n, &places->real[POINT_FIELD]));
+  PetscFunctionReturn(0);
+}
+
+static void add_place(const Grid *grid, PetscInt node, Points *places)
+{
+  const PetscInt n = places->n++;
+  for (PetscInt d = 0; d < grid->dim; ++d) places->real[POINT_X][n * grid->dim + d] = grid->x[node * grid->dim + d];
+  if (places->components[POINT_FIELD]) places->real[POINT_FIELD][n] = (PetscReal)cloud_motion(grid, node);
+}
+
+static PetscErrorCode PlacesDestroy(Points *places)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(places->real[POINT_X]));
+  PetscCall(PetscFree(places->real[POINT_FIELD]));
+  PetscFunctionReturn(0);
+}
+
 /* The field at the places of nodes: it moves those near prescribed ones, and is held where a node
  * has a twin. */
 static PetscErrorCode GatherNodes(Discretisation *s, const Search *search)
 {
   const Grid *grid = s->grid;
   const Support *w = gmm_of(s)->nodes;
-  const BasisInput basis = {.spec = &s->c->basis, .grid = grid, .nodes = &search->nodes, .on_hull = PETSC_TRUE};
-  Points places = {.dim = grid->dim};
-  PetscReal *x;
-  PetscInt n = 0;
+  const BasisInput basis = {.spec = &s->c->basis, .grid = grid, .nodes = search->nodes, .on_hull = PETSC_TRUE};
+  Points places;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(grid->n_owned * grid->dim, &x));
+  PetscCall(PlacesCreate(grid, grid->n_owned, &places));
   for (PetscInt i = 0; i < grid->n_owned; ++i)
-    if (!cloud_is_twin(grid, i)) {
-      for (PetscInt d = 0; d < grid->dim; ++d) x[n * grid->dim + d] = grid->x[i * grid->dim + d];
-      ++n;
-    }
-  places.n = n;
-  places.real[POINT_X] = x;
+    if (!cloud_is_twin(grid, i)) add_place(grid, i, &places);
   PetscCall(s->basis->support(&basis, &places, gmm_of(s)->nodes));
-  PetscCall(PetscFree(x));
+  PetscCall(PlacesDestroy(&places));
   constraints_clear(s->constraints);
   for (PetscInt i = 0, k = -1; i < grid->n_owned; ++i) {
     if (cloud_is_twin(grid, i)) continue;
@@ -224,12 +270,13 @@ PetscErrorCode GmmGather(Discretisation *s)
 {
   Gmm *g = gmm_of(s);
   Search search;
-  BasisInput basis = {.spec = &s->c->basis, .grid = s->grid, .nodes = &search.nodes};
+  BasisInput basis = {.spec = &s->c->basis, .grid = s->grid};
   PetscBool missing = PETSC_FALSE, any;
 
   PetscFunctionBeginUser;
   PetscCall(Follow(s));
   PetscCall(SearchBegin(s, &search));
+  basis.nodes = search.nodes;
   PetscCall(s->basis->support(&basis, s->points, s->support));
   PetscCall(s->basis->support(&basis, s->tracers, g->tracers));
   basis.on_hull = PETSC_TRUE;
@@ -237,12 +284,13 @@ PetscErrorCode GmmGather(Discretisation *s)
   PetscCall(GatherNodes(s, &search));
   const Lists lists = lists_of(s);
   for (int k = 0; k < 5; ++k) mark_used(s, &search, lists.n[k], lists.node[k]);
+  PetscCall(MeetingPlacesUse(&search.meeting, s, meeting_reach(s), &search.remote, search.use));
   for (PetscInt k = 0; k < search.remote.n; ++k)
     if (search.use[k] && search.ghost[k] < 0) missing = PETSC_TRUE;
   PetscCallMPI(MPI_Allreduce(&missing, &any, 1, MPIU_BOOL, MPI_LOR, s->grid->comm));
   if (any) PetscCall(Relayout(s, &search));
   for (int k = 0; k < 5; ++k) rename_nodes(s, &search, lists.n[k], lists.node[k]);
-  PetscCall(SearchEnd(&search));
+  PetscCall(SearchEnd(s->grid, &search));
   PetscCall(Follow(s));
   PetscCall(DiscretisationTouch(s));
   PetscCall(Release(s));
@@ -253,24 +301,24 @@ PetscErrorCode GmmGather(Discretisation *s)
  * among them. */
 static PetscErrorCode CoupleConstraints(const Discretisation *s, const BasisInput *basis, NodeGroups *groups)
 {
-  const PetscInt dim = s->grid->dim;
   const Constraints *c = s->constraints;
-  Points places = {.dim = dim, .n = c->n, .components[POINT_X] = dim};
+  Points places;
   Support now = {.n_groups = c->n};
   const BasisSites sites = {.points = &places, .now = &now, .skin = SKIN_HELD};
 
   PetscFunctionBeginUser;
-  PetscCall(
-    PetscMalloc3(c->n * dim, &places.real[POINT_X], c->n + 1, &now.node_start, c->start[c->n] + c->n, &now.node));
+  PetscCall(PlacesCreate(s->grid, c->n, &places));
+  PetscCall(PetscMalloc2(c->n + 1, &now.node_start, c->start[c->n] + c->n, &now.node));
   now.node_start[0] = 0;
   for (PetscInt k = 0, n = 0; k < c->n; ++k) {
-    PetscCall(PetscArraycpy(places.real[POINT_X] + k * dim, s->grid->x + c->at[k] * dim, dim));
+    add_place(s->grid, c->at[k], &places);
     for (PetscInt i = c->start[k]; i < c->start[k + 1]; ++i) now.node[n++] = c->node[i];
     now.node[n++] = c->twin[k];
     now.node_start[k + 1] = n;
   }
   PetscCall(s->basis->couplings(basis, &sites, groups));
-  PetscCall(PetscFree3(places.real[POINT_X], now.node_start, now.node));
+  PetscCall(PetscFree2(now.node_start, now.node));
+  PetscCall(PlacesDestroy(&places));
   PetscFunctionReturn(0);
 }
 
@@ -278,17 +326,14 @@ PetscErrorCode GmmCouplings(const Discretisation *s, NodeGroups *groups)
 {
   const Grid *grid = s->grid;
   const BasisSites sites = {.points = s->points, .now = s->support, .skin = SKIN};
-  unsigned char *twin;
-  Neighbours nodes;
+  const RemoteNodes none = {.n = 0};
+  Neighbours *nodes;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(grid->n_nodes, &twin));
-  for (PetscInt i = 0; i < grid->n_nodes; ++i) twin[i] = cloud_is_twin(grid, i);
-  PetscCall(NeighboursCreate(grid->dim, grid->n_nodes, grid->x, 0, NULL, twin, SKIN * radius_of(s), &nodes));
-  PetscCall(PetscFree(twin));
-  const BasisInput basis = {.spec = &s->c->basis, .grid = grid, .nodes = &nodes};
+  PetscCall(NodesByField(grid, grid->n_nodes, &none, SKIN * radius_of(s), &nodes));
+  const BasisInput basis = {.spec = &s->c->basis, .grid = grid, .nodes = nodes};
   PetscCall(s->basis->couplings(&basis, &sites, groups));
   PetscCall(CoupleConstraints(s, &basis, groups));
-  PetscCall(NeighboursDestroy(&nodes));
+  PetscCall(NodesByFieldDestroy(grid, &nodes));
   PetscFunctionReturn(0);
 }

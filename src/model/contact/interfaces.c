@@ -9,9 +9,6 @@
 
 static void check_method(const Model *m, Diag *diag)
 {
-  if (m->method->clouds)
-    diag_error(diag, "interfaces", "method %s has one field for all bodies; mpm and fem let them meet at interfaces",
-               m->method->name);
   if (m->grid->n_fields > 1) return;
   if (m->method->restores_grid) {
     diag_error(diag, "interfaces", "a background mesh has one field for all bodies; a box has one for each");
@@ -164,7 +161,6 @@ PetscErrorCode InterfacesStart(Model *m, Diag *diag)
   if (!rank) check_method(m, diag);
   if (!rank) check_pairs(m->c, diag);
   if (!rank) check_twice(m->c, diag);
-  if (m->method->clouds) PetscFunctionReturn(0);
   PetscCall(CheckNodes(m, rank, diag));
   PetscCall(PetscMalloc1(6 * m->c->n_bodies, &bounds));
   PetscCall(SurfaceBounds(&in, m->c->n_bodies, bounds));

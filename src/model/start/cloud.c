@@ -1,6 +1,20 @@
 /* From cells to a cloud: what gmm does once, before the first step. */
 #include "model/model_private.h"
 
+#define TAKEN (-1) /* of a node that no body of its velocity field has, but one of another field */
+
+/* What a body has that others meet at an interface is no obstacle to these: the body is before it, however thin. */
+static void mark_taken(const Grid *mesh, PetscReal *mark)
+{
+  const PetscInt nn = mesh->nodes_per_cell, entries = mesh->n_fields > 1 ? mesh->n_cells / mesh->n_fields * nn : 0;
+  for (PetscInt e = 0; e < entries; ++e) {
+    PetscReal most = 0;
+    for (PetscInt f = 0; f < mesh->n_fields; ++f) most = PetscMax(most, mark[mesh->cell_node[f * entries + e]]);
+    for (PetscInt f = 0; f < mesh->n_fields && most > 0; ++f)
+      if (mark[mesh->cell_node[f * entries + e]] <= 0) mark[mesh->cell_node[f * entries + e]] = TAKEN;
+  }
+}
+
 /* Nodes of cells that hold points, and nodes whose motion is prescribed: obstacles, and the body's
  * own boundary. The axis is no obstacle where the body has no nodes on it. Owners know of all ranks'
  * cells. */
@@ -15,14 +29,68 @@ static PetscErrorCode MarkNodes(const Model *m, unsigned char *marked, unsigned 
   for (PetscInt p = 0; p < m->points->n; ++p)
     for (PetscInt I = 0; I < nn; ++I) mark[mesh->cell_node[m->points->cell[p] * nn + I]] = 1;
   PetscCall(GridSumToOwners(mesh, 1, mark));
+  if (mesh->n_fields > 1) PetscCall(GridToGhosts(mesh, 1, mark));
+  mark_taken(mesh, mark);
   for (PetscInt i = 0; i < mesh->n_owned; ++i) {
     twin[i] = 0;
-    for (PetscInt d = 0; d < m->dim; ++d) twin[i] |= m->boundary->fixed[i * m->dim + d];
+    for (PetscInt d = 0; d < m->dim && mark[i] != TAKEN; ++d) twin[i] |= m->boundary->fixed[i * m->dim + d];
     if (mark[i] <= 0 && boundary_slides_on_axis(m->boundary, i)) twin[i] = 0;
     marked[i] = mark[i] > 0 ? CLOUD_BODY : (twin[i] ? CLOUD_OBSTACLE : 0);
   }
   PetscCall(PetscFree(mark));
   PetscFunctionReturn(0);
+}
+
+/* Nodes of cell `cell` are of a velocity field; sums are taken over all ranks. */
+static void add_field(const Grid *mesh, PetscInt cell, PetscInt field, PetscReal *sum)
+{
+  for (PetscInt I = 0; I < mesh->nodes_per_cell; ++I) {
+    PetscReal *at = sum + 2 * mesh->cell_node[cell * mesh->nodes_per_cell + I];
+    at[0] += 1, at[1] += (PetscReal)field;
+  }
+}
+
+/* The velocity field of each local node: a box has nodes of its own for each field, of a mesh it is that of the body
+ * whose cells they are of, and -1 where there is none. */
+static PetscErrorCode NodeFields(const Model *m, PetscInt *field)
+{
+  const Grid *mesh = m->grid;
+  PetscReal *sum; /* of each node: how often it was told, and what */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(2 * mesh->n_nodes, &sum));
+  for (PetscInt e = 0; e < mesh->n_cells && mesh->n_fields > 1; ++e) add_field(mesh, e, grid_field_of(mesh, e), sum);
+  for (PetscInt p = 0; p < m->points->n && mesh->n_fields <= 1; ++p)
+    add_field(mesh, m->points->cell[p], case_field(m->c, m->points->body[p]), sum);
+  PetscCall(GridSumToOwners(mesh, 2, sum));
+  PetscCall(GridToGhosts(mesh, 2, sum));
+  for (PetscInt i = 0; i < mesh->n_nodes; ++i)
+    field[i] = sum[2 * i] > 0 ? (PetscInt)(sum[2 * i + 1] / sum[2 * i] + 0.5) : -1;
+  PetscCall(PetscFree(sum));
+  PetscFunctionReturn(0);
+}
+
+/* Followers in a mesh go with the nodes of their cell; beside all bodies with the nearest point. */
+static void follow_fields(const Model *m, const PetscInt *field, Points *followers)
+{
+  const Grid *mesh = m->grid;
+  for (PetscInt p = 0; p < followers->n; ++p) {
+    PetscInt mine = -1;
+    for (PetscInt I = 0; I < mesh->nodes_per_cell && mine < 0; ++I)
+      mine = field[mesh->cell_node[followers->cell[p] * mesh->nodes_per_cell + I]];
+    if (mine < 0) mine = points_field_near(m->points, point_real(followers, POINT_X, p));
+    followers->real[POINT_FIELD][p] = (PetscReal)mine;
+  }
+}
+
+/* Fields of a mesh are those of its bodies; a box has told its points. */
+static void tell_points(const Model *m, const PetscInt *field)
+{
+  if (m->grid->n_fields > 1) return;
+  for (PetscInt p = 0; p < m->points->n; ++p)
+    m->points->real[POINT_FIELD][p] = (PetscReal)case_field(m->c, m->points->body[p]);
+  follow_fields(m, field, m->tracers);
+  follow_fields(m, field, m->loads->carriers);
 }
 
 /* Points keep the number of the cell where they were born: it orders them in memory, and they stay
@@ -36,21 +104,29 @@ PetscErrorCode ModelToCloud(Model *m)
 {
   Grid *cloud;
   Boundary *boundary;
-  PetscReal spacing;
   unsigned char *marked, *twin;
+  PetscInt *field = NULL;
+  CloudSource source = {.n_motions = case_fields(m->c)};
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(m->grid->n_owned, &marked, m->grid->n_owned, &twin));
   PetscCall(MarkNodes(m, marked, twin));
   if (!basis_needs_constraints(&m->c->basis)) PetscCall(PetscArrayzero(twin, m->grid->n_owned));
   PetscCall(LoadsLeaveCells(m->loads, m->grid, m->points));
-  PetscCall(GridSpacing(m->grid, m->points->n, m->points->cell, &spacing));
-  PetscCall(GridCreateCloud(m->grid, spacing, marked, twin, &cloud));
-  PetscCall(BoundaryToCloud(m->boundary, m->grid, marked, cloud, &boundary));
+  if (source.n_motions > 1) {
+    PetscCall(PetscMalloc1(m->grid->n_nodes, &field));
+    PetscCall(NodeFields(m, field));
+    tell_points(m, field);
+  }
+  source.marked = marked, source.twin = twin, source.motion = field;
+  PetscCall(GridSpacing(m->grid, m->points->n, m->points->cell, &source.spacing));
+  PetscCall(GridCreateCloud(m->grid, &source, &cloud));
+  PetscCall(BoundaryToCloud(m->boundary, m->grid, cloud, &boundary));
   leave_cells(m->grid, m->points);
   leave_cells(m->grid, m->tracers);
   leave_cells(m->grid, m->loads->carriers);
   PetscCall(PetscFree2(marked, twin));
+  PetscCall(PetscFree(field));
   PetscCall(BoundaryDestroy(&m->boundary));
   PetscCall(GridDestroy(&m->grid));
   m->boundary = boundary;

@@ -4,7 +4,6 @@
 #include "material/law.h"
 #include "support/support.h"
 
-#define SURFACE_NODES 27 /* most that carry a point */
 #define SURFACE_SEARCH 4 /* cells around a body in which another one may be that it meets in a step */
 
 /* A node that carries a point. */
@@ -53,6 +52,7 @@ typedef struct {
 
 /* Collective. Boxes around all bodies: n_bodies x 6, min and then minus max. */
 PetscErrorCode SurfaceBounds(const SurfaceInput *in, PetscInt n_bodies, PetscReal *bounds);
+PetscBool surface_near(const PetscReal *x, PetscInt dim, const PetscReal *box, PetscReal within);
 /* Collective. Points of `body` that are `within` (m) of the box. */
 PetscErrorCode SurfaceGather(const SurfaceInput *in, PetscInt body, const PetscReal *bounds, PetscReal within,
                              Surface *surface);

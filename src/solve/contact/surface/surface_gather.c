@@ -17,7 +17,7 @@ PetscErrorCode SurfaceBounds(const SurfaceInput *in, PetscInt n_bodies, PetscRea
   PetscFunctionReturn(0);
 }
 
-static PetscBool is_near(const PetscReal *x, PetscInt dim, const PetscReal *box, PetscReal within)
+PetscBool surface_near(const PetscReal *x, PetscInt dim, const PetscReal *box, PetscReal within)
 {
   for (PetscInt d = 0; d < dim; ++d)
     if (x[d] < box[d] - within || x[d] > -box[3 + d] + within) return PETSC_FALSE;
@@ -51,10 +51,9 @@ static PetscErrorCode Carriers(const SurfaceInput *in, PetscInt g, SurfacePoint 
   const PetscInt dim = surface->dim, nn = support_nodes(in->support, g);
   const PetscInt *node = in->support->node + in->support->node_start[g];
   const PetscReal *N = support_N(in->support, g, s->owner), *dN = support_dN(in->support, g, s->owner, dim);
-  PetscReal bend[3 * SURFACE_NODES];
+  PetscReal bend[3 * CLOUD_MAX_NODES];
 
   PetscFunctionBeginUser;
-  PetscCheck(nn <= SURFACE_NODES, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%" PetscInt_FMT " nodes carry a point", nn);
   if (!in->bends || !in->bends(in->bends_context, s->owner, nn, bend)) PetscCall(PetscArrayzero(bend, dim * nn));
   s->n = nn;
   s->first_carrier = surface->n_carriers;
@@ -117,7 +116,28 @@ static PetscErrorCode Share(MPI_Comm comm, Surface *surface)
 static PetscBool is_wanted(const SurfaceInput *in, PetscInt p, PetscInt body, const PetscReal *bounds, PetscReal within)
 {
   const Points *points = in->points;
-  return (PetscBool)(points->body[p] == body && is_near(point_real(points, POINT_X, p), points->dim, bounds, within));
+  return (PetscBool)(points->body[p] == body &&
+                     surface_near(point_real(points, POINT_X, p), points->dim, bounds, within));
+}
+
+/* On to the group that holds point p, of those that ascend; n_groups: it is lost. */
+static void find_group(const Support *w, PetscInt p, PetscInt *g)
+{
+  while (w && *g < w->n_groups && p >= w->point_start[*g + 1]) ++*g;
+}
+
+/* How many are wanted, and the nodes that carry them. */
+static void count_wanted(const SurfaceInput *in, PetscInt body, const PetscReal *bounds, PetscReal within, PetscInt *n,
+                         PetscInt *carriers)
+{
+  const Support *w = in->support;
+  *n = *carriers = 0;
+  for (PetscInt p = 0, g = 0; p < in->points->n; ++p) {
+    find_group(w, p, &g);
+    if (!is_wanted(in, p, body, bounds, within)) continue;
+    ++*n;
+    if (w && g < w->n_groups) *carriers += support_nodes(w, g);
+  }
 }
 
 PetscErrorCode SurfaceGather(const SurfaceInput *in, PetscInt body, const PetscReal *bounds, PetscReal within,
@@ -125,15 +145,15 @@ PetscErrorCode SurfaceGather(const SurfaceInput *in, PetscInt body, const PetscR
 {
   const Points *points = in->points;
   const Support *w = in->support;
-  PetscInt n = 0, g = 0;
+  PetscInt n, n_carriers, g = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < points->n; ++p) n += is_wanted(in, p, body, bounds, within);
+  count_wanted(in, body, bounds, within, &n, &n_carriers);
   *surface = (Surface){.dim = points->dim};
   PetscCall(PetscMalloc1(n, &surface->point));
-  PetscCall(PetscMalloc1(w ? n * SURFACE_NODES : 0, &surface->carrier));
+  PetscCall(PetscMalloc1(n_carriers, &surface->carrier));
   for (PetscInt p = 0; p < points->n; ++p) {
-    while (w && g < w->n_groups && p >= w->point_start[g + 1]) ++g;
+    find_group(w, p, &g);
     if (!is_wanted(in, p, body, bounds, within)) continue;
     if (w && g == w->n_groups) continue; /* lost */
     describe(in, p, surface->point + surface->n);
