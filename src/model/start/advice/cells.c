@@ -22,8 +22,11 @@ static PetscErrorCode AdviseUneven(const Model *m, PetscInt b, Diag *diag)
   if (!has_equal_shares(m->c->bodies[b].points_per_cell)) PetscFunctionReturn(0);
   for (PetscInt p = 0; p < points->n; ++p) {
     if (points->body[p] != b) continue;
-    range[0] = PetscMax(range[0], -points->real[POINT_VOLUME][p]);
-    range[1] = PetscMax(range[1], points->real[POINT_VOLUME][p]);
+    /* of a ring its section */
+    const PetscReal room =
+      points->real[POINT_VOLUME][p] / kinematics_weight(m->c->kinematics, *point_real(points, POINT_X, p));
+    range[0] = PetscMax(range[0], -room);
+    range[1] = PetscMax(range[1], room);
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPI_MAX, m->comm));
   if (range[1] <= -UNEVEN * range[0]) PetscFunctionReturn(0);
