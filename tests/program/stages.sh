@@ -324,6 +324,14 @@ expect "bodies of an interface by their names" 0 "$talus" plot slide3 --field bo
 rm -rf cut && cp -r slide1 cut && forget cut 13
 expect "an interface changes, resumed" 0 "$talus" run --resume cut --quiet
 same_bits "$name" slide1 cut
+for ranks in 1 2; do
+  expect "an interface of gmm changes, on $ranks" 0 on_ranks $ranks "$talus" run slide.yaml --out gmm-slide$ranks --set method=gmm
+done
+awk -F, 'END { exit !(($5 / (0.2 * 9.81 * (0.3420201 - 0.2 * 0.9396926)) - 1) ^ 2 < 0.01 ^ 2) }' gmm-slide1/history.csv ||
+  fail "$name: $(tail -n 1 gmm-slide1/history.csv)"
+rm -rf cut && cp -r gmm-slide1 cut && forget cut 13
+expect "an interface of gmm changes, resumed" 0 "$talus" run --resume cut --quiet
+same_bits "$name" gmm-slide1 cut
 
 # What has come to rest on a wall by statics stays at rest in dynamics, whatever the step: to 1e-6 of its settlement
 cat >rests.yaml <<'END'

@@ -41,7 +41,7 @@ for method in mpm fem; do
 done
 
 # Two bodies that meet, in a box that turns, whatever lies between them; a core in a frame whose nodes turn.
-for way in "fem bonded" "mpm bonded" "fem frictionless"; do
+for way in "fem bonded" "mpm bonded" "gmm bonded" "fem frictionless" "gmm frictionless"; do
   set -- $way
   expect "two turn, $way" 0 "$talus" run turns.yaml --out turns --force --quiet --set method=$1 --set analysis.steps=18 --set walls[0].contact=frictionless \
     --set 'bodies=[{name: b, shape: {box: {min: [-0.5, -0.5], max: [0.5, 0]}}, material: m}, {name: c, shape: {box: {min: [-0.5, 0], max: [0.5, 0.5]}}, material: m}]' \

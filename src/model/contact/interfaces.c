@@ -1,5 +1,7 @@
 /* Interfaces between bodies: what none can be made of, and how bodies stand at the start. */
 #include "model/model_private.h"
+#include "base/math/vector.h"
+#include "grid/cloud/cloud.h"
 #include "solve/contact/surface/surface.h"
 
 /* Of its reach: a part of a body that reaches deeper into another body at the start is a mistake; what
@@ -16,21 +18,12 @@ static void check_method(const Model *m, Diag *diag)
   }
 }
 
-/* Both bodies as one number, if they meet at an interface; else -1. */
-static PetscInt pair_of(const Case *c, PetscInt a, PetscInt b)
-{
-  PetscBool first;
-  if (a < 0 || b < 0 || a == b || case_interface(c, a, b, &first) < 0) return -1;
-  return a * c->n_bodies + b;
-}
-
-/* The last pair of bodies that have a node in common, on any rank; -1: none. */
-static PetscErrorCode SharingPair(const Model *m, PetscInt *pair)
+/* share[a * n_bodies + b]: body a has a node that was b's as well, on any rank. */
+static PetscErrorCode SharingPairs(const Model *m, int *share)
 {
   const Grid *grid = m->grid;
-  const PetscInt nn = grid->nodes_per_cell;
+  const PetscInt nn = grid->nodes_per_cell, bodies = m->c->n_bodies;
   PetscReal *here, *there; /* the body that has a node: on this rank, on its owner */
-  PetscInt found = -1;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(grid->n_nodes, &here, grid->n_nodes, &there));
@@ -38,31 +31,29 @@ static PetscErrorCode SharingPair(const Model *m, PetscInt *pair)
   for (PetscInt e = 0; e < m->points->n * nn; ++e) {
     const PetscInt p = e / nn, mine = m->points->body[p];
     PetscReal *body = here + grid->cell_node[m->points->cell[p] * nn + e % nn];
-    found = PetscMax(found, pair_of(m->c, mine, (PetscInt)*body));
+    if (*body >= 0) share[mine * bodies + (PetscInt)*body] = 1;
     *body = (PetscReal)mine;
   }
   PetscCall(PetscArraycpy(there, here, grid->n_nodes));
   PetscCall(GridToGhosts(grid, 1, there));
   for (PetscInt i = grid->n_owned; i < grid->n_nodes; ++i)
-    found = PetscMax(found, pair_of(m->c, (PetscInt)here[i], (PetscInt)there[i]));
+    if (here[i] >= 0 && there[i] >= 0) share[(PetscInt)here[i] * bodies + (PetscInt)there[i]] = 1;
   PetscCall(PetscFree2(here, there));
-  PetscCall(MPIU_Allreduce(&found, pair, 1, MPIU_INT, MPI_MAX, m->comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, share, (PetscMPIInt)(bodies * bodies), MPI_INT, MPI_MAX, m->comm));
   PetscFunctionReturn(0);
 }
 
 /* Bodies of one mesh have fields of their own where they share no node. */
-static PetscErrorCode CheckNodes(const Model *m, PetscMPIInt rank, Diag *diag)
+static void check_nodes(const Model *m, const int *share, Diag *diag)
 {
-  PetscInt pair;
-
-  PetscFunctionBeginUser;
-  if (m->grid->n_fields > 1) PetscFunctionReturn(0);
-  PetscCall(SharingPair(m, &pair));
-  if (pair < 0 || rank) PetscFunctionReturn(0);
+  const PetscInt bodies = m->c->n_bodies;
+  PetscInt pair = bodies * bodies - 1;
+  PetscBool first;
+  if (m->grid->n_fields > 1) return;
+  while (pair >= 0 && !(share[pair] && case_interface(m->c, pair / bodies, pair % bodies, &first) >= 0)) --pair;
+  if (pair < 0) return;
   diag_error(diag, "interfaces", "'%s' and '%s' share nodes of the mesh: the %s between them must be there twice",
-             m->c->bodies[pair / m->c->n_bodies].name, m->c->bodies[pair % m->c->n_bodies].name,
-             m->dim == 2 ? "line" : "surface");
-  PetscFunctionReturn(0);
+             m->c->bodies[pair / bodies].name, m->c->bodies[pair % bodies].name, m->dim == 2 ? "line" : "surface");
 }
 
 /* Bodies of one field stick; those of two need an interface. */
@@ -148,12 +139,56 @@ static PetscErrorCode FitInterface(Model *m, const SurfaceInput *in, const Petsc
   PetscFunctionReturn(0);
 }
 
+/* Is a point of one body nearer to one of the other than both the reach of a cloud and that to a surface? */
+static PetscBool are_near(const Surface *a, const Surface *b, PetscReal reach)
+{
+  for (const SurfacePoint *p = a->point; p < a->point + a->n; ++p) {
+    SurfaceWalk walk = surface_walk(b, p->x, reach + b->reach);
+    for (const SurfacePoint *q; (q = surface_next(&walk));) {
+      const PetscReal r[3] = {q->x[0] - p->x[0], q->x[1] - p->x[1], q->x[2] - p->x[2]};
+      if (vector_dot(r, r) < PetscSqr(reach + q->reach)) return PETSC_TRUE;
+    }
+  }
+  return PETSC_FALSE;
+}
+
+/* Clouds reach through a thin body to one behind it that has the same field, and would tie both. */
+static PetscErrorCode WarnOfStrangers(const Model *m, const SurfaceInput *in, const PetscReal *bounds, const int *share,
+                                      Diag *diag)
+{
+  const PetscInt bodies = m->c->n_bodies;
+  PetscReal spacing;
+  Surface body[2];
+  PetscBool first;
+
+  PetscFunctionBeginUser;
+  PetscCall(GridSpacing(m->grid, m->points->n, m->points->cell, &spacing));
+  const PetscReal reach = m->c->basis.radius * spacing;
+  for (PetscInt a = 0; a < bodies; ++a)
+    for (PetscInt b = a + 1; b < bodies; ++b) {
+      if (case_field(m->c, a) != case_field(m->c, b) || case_interface(m->c, a, b, &first) >= 0) continue;
+      if (share[a * bodies + b] || share[b * bodies + a]) continue;
+      PetscCall(SurfaceGather(in, a, bounds + 6 * b, 2 * reach, body));
+      PetscCall(SurfaceGather(in, b, bounds + 6 * a, 2 * reach, body + 1));
+      if (are_near(body, body + 1, reach)) {
+        diag_warning(diag, "interfaces",
+                     "'%s' and '%s' are so near each other that clouds have nodes of both: they stick",
+                     m->c->bodies[a].name, m->c->bodies[b].name);
+        diag_hint(diag, "- {name: ..., between: [%s, %s]} gives each a field of its own", m->c->bodies[a].name,
+                  m->c->bodies[b].name);
+      }
+      for (int i = 0; i < 2; ++i) PetscCall(SurfaceClear(body + i));
+    }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode InterfacesStart(Model *m, Diag *diag)
 {
   const SurfaceInput in = {
     .comm = m->comm, .kinematics = m->c->kinematics, .grid = m->grid, .points = m->points, .materials = m->materials};
   PetscReal *bounds;
   PetscMPIInt rank;
+  int *share;
 
   PetscFunctionBeginUser;
   if (!m->c->n_interfaces) PetscFunctionReturn(0);
@@ -161,10 +196,14 @@ PetscErrorCode InterfacesStart(Model *m, Diag *diag)
   if (!rank) check_method(m, diag);
   if (!rank) check_pairs(m->c, diag);
   if (!rank) check_twice(m->c, diag);
-  PetscCall(CheckNodes(m, rank, diag));
+  PetscCall(PetscCalloc1(m->c->n_bodies * m->c->n_bodies, &share));
+  PetscCall(SharingPairs(m, share));
+  if (!rank) check_nodes(m, share, diag);
   PetscCall(PetscMalloc1(6 * m->c->n_bodies, &bounds));
   PetscCall(SurfaceBounds(&in, m->c->n_bodies, bounds));
   for (PetscInt k = 0; k < m->c->n_interfaces; ++k) PetscCall(FitInterface(m, &in, bounds, k, diag));
+  if (m->method->clouds) PetscCall(WarnOfStrangers(m, &in, bounds, share, diag));
   PetscCall(PetscFree(bounds));
+  PetscCall(PetscFree(share));
   PetscFunctionReturn(0);
 }

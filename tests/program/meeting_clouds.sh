@@ -1,0 +1,101 @@
+#!/bin/sh
+# Bodies of gmm that meet at interfaces, as the nodes of a box and of meshes have them: held nodes below a thin body and
+# bodies behind it do not reach through it; rings, and a core that is held in one.
+. "$(dirname "$0")/library.sh"
+
+# A block slides on a base of one cell, whose lower nodes are held, without friction: the impulse of its weight.
+cat >thin.yaml <<'END'
+kinematics: plane-strain
+method: gmm
+analysis: {type: dynamic, end: 0.1, step: 2e-3}
+grid: {box: {min: [0, 0], max: [3, 1]}, size: 0.125}
+bodies:
+  - {name: block, shape: {box: {min: [0.5, 0.125], max: [1, 0.5]}}, material: rubber}
+  - {name: base, shape: {box: {min: [0.25, 0], max: [2.75, 0.125]}}, material: rubber}
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0.3}}
+boundary: [{name: floor, on: {boundary: bottom}, fix: [x, y]}]
+interfaces: [{name: joint, between: [block, base], contact: frictionless}]
+loads: {gravity: [3, -9], gravity_amplitude: [[0, 0], [0.1, 1]]}
+measures: {along: {momentum: x, of: {body: block}}}
+output: {fields: [displacement], every: end}
+END
+# along KILOGRAMS: of the block that slides, in the last run
+along() {
+  awk -F, -v m=$1 'END { exit !(($3 / (m * 3 * 0.05) - 1) ^ 2 < 1e-6 ^ 2) }' run/history.csv ||
+    fail "$name: $(tail -n 1 run/history.csv)"
+}
+for way in "lme 1" "mls 2"; do
+  set -- $way
+  expect "a thin base, $way" 0 on_ranks $2 "$talus" run thin.yaml --out run --force --quiet --set "basis={$1: {}}"
+  along 187.5
+done
+
+# A plate of one cell between a block and the base: block and base would have one field, and clouds reach through the plate.
+plate='bodies=[{name: block, shape: {box: {min: [0.5, 0.25], max: [1, 0.5]}}, material: rubber},
+  {name: plate, shape: {box: {min: [0.25, 0.125], max: [2.75, 0.25]}}, material: rubber},
+  {name: base, shape: {box: {min: [0, 0], max: [3, 0.125]}}, material: rubber}]'
+upper='{name: upper, between: [block, plate], contact: frictionless}, {name: lower, between: [plate, base], contact: stick}'
+for ranks in 1 2; do
+  expect "a plate between, $ranks" 0 on_ranks $ranks "$talus" check thin.yaml --set "$plate" --set "interfaces=[$upper]"
+  says err.txt "'block' and 'base' are so near each other that clouds have nodes of both: they stick" \
+    "between: [block, base]} gives each a field of its own"
+done
+expect "three fields" 0 "$talus" run thin.yaml --out run --force --quiet --set "$plate" \
+  --set "interfaces=[$upper, {name: far, between: [block, base]}]"
+! grep -q "so near each other" err.txt || fail "$name: it warns"
+along 125
+
+# A cylinder on another one bears its weight, pi 0.75^2 0.5 1000 9.81 N, on a circle of 0.75 m.
+cat >rings.yaml <<'END'
+kinematics: axisymmetric
+method: gmm
+analysis: {type: static, steps: 2}
+grid: {box: {min: [0, 0], max: [2, 1.25]}, size: 0.125}
+bodies:
+  - {name: upper, shape: {box: {min: [0, 0.5], max: [0.75, 1]}}, material: rubber}
+  - {name: lower, shape: {box: {min: [0, 0], max: [1.5, 0.5]}}, material: rubber}
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
+boundary: [{name: floor, on: {boundary: bottom}, fix: [x, y]}]
+interfaces: [{name: joint, between: [upper, lower], contact: friction, friction: 0.3}]
+loads: {gravity: [0, -9.81]}
+measures: {push: {interface_force: y, of: {interface: joint}}, area: {interface: area, of: {interface: joint}}}
+output: {fields: [displacement], every: end}
+END
+for ranks in 1 3; do
+  expect "cylinders, $ranks" 0 on_ranks $ranks "$talus" run rings.yaml --out run --force --quiet
+  [ ! -s err.txt ] || fail "$name: it warns"
+  awk -F, 'END { exit !(($3 / 8667.850480795 - 1) ^ 2 < 1e-8 ^ 2 && ($4 / 1.767145868 - 1) ^ 2 < 1e-3 ^ 2) }' run/history.csv ||
+    fail "$name: $(tail -n 1 run/history.csv)"
+done
+
+# A core that sticks to a ring of another material, pressed from outside, in a mesh: Lame's solution (program/bonded).
+cat >ring.geo <<'END'
+Point(1) = {0, 0, 0}; Point(2) = {0.5, 0, 0}; Point(3) = {0, 0.5, 0};
+Line(1) = {1, 2}; Circle(2) = {2, 1, 3}; Line(3) = {3, 1};
+Curve Loop(1) = {1, 2, 3}; Plane Surface(1) = {1};
+Point(4) = {0.5, 0, 0}; Point(5) = {1, 0, 0}; Point(6) = {0, 1, 0}; Point(7) = {0, 0.5, 0};
+Line(4) = {4, 5}; Circle(5) = {5, 1, 6}; Line(6) = {6, 7}; Circle(7) = {7, 1, 4};
+Curve Loop(2) = {4, 5, 6, 7}; Plane Surface(2) = {2};
+Physical Surface("core") = {1}; Physical Surface("ring") = {2}; Physical Curve("outside") = {5};
+Mesh.CharacteristicLengthMin = 0.08; Mesh.CharacteristicLengthMax = 0.08;
+END
+cat >ring.yaml <<'END'
+kinematics: plane-strain
+method: gmm
+analysis: {type: static, steps: 1}
+grid: {mesh: ring.geo}
+bodies: [{name: core, region: core, points_per_cell: 3, material: hard}, {name: ring, region: ring, points_per_cell: 3, material: soft}]
+materials:
+  hard: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}
+  soft: {law: neo-hookean, density: 1000, young: 3e6, poisson: 0.2}
+boundary: [{on: {x: 0}, fix: [x]}, {on: {y: 0}, fix: [y]}]
+loads: {pressures: [{on: {boundary: outside}, value: 1e4}]}
+interfaces: [{name: i, between: [ring, core], contact: stick}]
+measures: {core: {stress: xx, of: {body: core}}}
+output: {fields: [displacement], every: end}
+END
+for ranks in 1 2; do
+  expect "a core in a ring, $ranks" 0 on_ranks $ranks "$talus" run ring.yaml --out run --force --quiet
+  awk -F, 'END { exit !(($3 / -12825.6513 - 1) ^ 2 < 0.005 ^ 2) }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
+done
+finish
