@@ -1,4 +1,5 @@
 #include "case/shape_volume.h"
+#include "grid/cloud/cloud.h"
 #include "model/explicit/critical.h"
 #include "run/check/check_private.h"
 #include "run/stages/initial.h"
@@ -305,6 +306,8 @@ static PetscErrorCode ReportInterfaces(const Model *m, FILE *out)
   PetscFunctionBeginUser;
   if (m->grid->n_fields > 1)
     say(m, out, "#   velocity fields: %d, each with its share of these cells and nodes\n", (int)m->grid->n_fields);
+  if (m->grid->cloud && m->grid->cloud->n_motions > 1)
+    say(m, out, "#   velocity fields: %d, each with nodes of its own\n", (int)m->grid->cloud->n_motions);
   for (PetscInt k = 0; k < m->c->n_interfaces; ++k) {
     PetscInt local[2] = {0, 0}, all[2];
     for (const ContactPoint *c = m->contact->point; c < m->contact->point + m->contact->n; ++c) {
