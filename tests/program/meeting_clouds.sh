@@ -98,4 +98,39 @@ for ranks in 1 2; do
   expect "a core in a ring, $ranks" 0 on_ranks $ranks "$talus" run ring.yaml --out run --force --quiet
   awk -F, 'END { exit !(($3 / -12825.6513 - 1) ^ 2 < 0.005 ^ 2) }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
 done
+
+# Held nodes that no body of a mesh has are there for each: the first body rests beside them, the other one slides down on
+# it and bounces.
+cat >stop.geo <<'END'
+Point(1) = {0, 0, 0}; Point(2) = {1.5, 0, 0}; Point(3) = {1.5, 0.3, 0}; Point(4) = {0, 0.3, 0};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Curve Loop(1) = {1, 2, 3, 4}; Plane Surface(1) = {1};
+Point(5) = {0.7, 0.3, 0}; Point(6) = {1.2, 0.3, 0}; Point(7) = {1.2, 0.7, 0}; Point(8) = {0.7, 0.7, 0};
+Line(5) = {5, 6}; Line(6) = {6, 7}; Line(7) = {7, 8}; Line(8) = {8, 5};
+Curve Loop(2) = {5, 6, 7, 8}; Plane Surface(2) = {2};
+Point(11) = {1.75, 0, 0}; Point(12) = {2, 0, 0}; Point(13) = {2, 1, 0}; Point(14) = {1.75, 1, 0};
+Line(11) = {11, 12}; Line(12) = {12, 13}; Line(13) = {13, 14}; Line(14) = {14, 11};
+Curve Loop(3) = {11, 12, 13, 14}; Plane Surface(3) = {3};
+Physical Surface("low") = {1}; Physical Surface("top") = {2}; Physical Surface("nothing") = {3};
+Physical Curve("floor") = {1}; Physical Curve("stop") = {14};
+Mesh.CharacteristicLengthMin = 0.1; Mesh.CharacteristicLengthMax = 0.1;
+END
+cat >stop.yaml <<'END'
+kinematics: plane-strain
+method: gmm
+analysis: {type: dynamic, step: 4e-3, end: 0.6}
+grid: {mesh: stop.geo}
+bodies: [{name: low, region: low, points_per_cell: 3, material: rubber}, {name: top, region: top, points_per_cell: 3, material: rubber}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
+interfaces: [{name: joint, between: [top, low], contact: frictionless}]
+boundary: [{name: floor, on: {boundary: floor}, fix: [x, y]}, {name: stop, on: {boundary: stop}, fix: [x, y]}]
+loads: {gravity: [4.905, -8.495709]} # 30 degrees
+measures: {along: {momentum: x, of: {body: top}}}
+output: {fields: [displacement], every: end}
+END
+for ranks in 1 2; do
+  expect "a stop, $ranks" 0 on_ranks $ranks "$talus" run stop.yaml --out run --force --quiet
+  awk -F, '$1 > 0.299 && $1 < 0.301 { fell = $3 } END { exit !((fell / (200 * 4.905 * 0.3) - 1) ^ 2 < 0.001 ^ 2 && $3 < 0) }' run/history.csv ||
+    fail "$name: $(tail -n 1 run/history.csv)"
+done
 finish
