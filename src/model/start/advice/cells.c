@@ -11,7 +11,7 @@ static PetscBool has_equal_shares(PetscInt points_per_cell)
   return points_per_cell == 1 || points_per_cell == 3 || points_per_cell == 4 || points_per_cell == 8;
 }
 
-/* Nodes of gmm are where cells were, and the room that a point has is theirs. */
+/* Nodes of gmm are where cells were, and the room that a point has is theirs: in rings, what it has of their section. */
 static PetscErrorCode AdviseUneven(const Model *m, PetscInt b, Diag *diag)
 {
   const Points *points = m->points;
@@ -22,7 +22,6 @@ static PetscErrorCode AdviseUneven(const Model *m, PetscInt b, Diag *diag)
   if (!has_equal_shares(m->c->bodies[b].points_per_cell)) PetscFunctionReturn(0);
   for (PetscInt p = 0; p < points->n; ++p) {
     if (points->body[p] != b) continue;
-    /* of a ring its section */
     const PetscReal room =
       points->real[POINT_VOLUME][p] / kinematics_weight(m->c->kinematics, *point_real(points, POINT_X, p));
     range[0] = PetscMax(range[0], -room);
