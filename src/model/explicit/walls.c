@@ -15,9 +15,9 @@
 #include "base/math/vector.h"
 
 #define DASHPOT 0.5 /* of the impedance of the material */
-/* (omega dt)^2 of springs alone on the nodes: a full cell beside a wall has 0.64 with a Courant number of 0.8, and 4 is
- * unstable, of which waves have up to 2.56 (docs/theory.md, section 73) */
-#define MOST 1.3
+/* (omega dt)^2 of springs alone on the nodes: 4 is unstable, of which waves have up to 4 C^2, C the Courant number; of
+ * what that leaves (docs/theory.md, section 73). A full cell beside a wall has C^2 times the stiffness of contact. */
+#define MOST 3.61
 
 static PetscReal *kept_of(const Model *m, const ContactPoint *c) { return contact_kept_of(m->contact, m->points, c); }
 
@@ -39,12 +39,12 @@ static PetscReal beside_spring(const Explicit *e, const ContactPoint *c)
   return c->before == CONTACT_OPEN ? 0 : kept + c->law.penalty * c->open;
 }
 
-/* Over that of a cell: what is bonded bends where it is held, and its spring is as stiff as the substep lets it be:
- * half a layer of cells, rho A h / 2, between it and the next cell has omega^2 = 2 (1 + stiffness) c^2 / h^2. */
+/* Over that of a cell: what is bonded bends where it is held, and its spring is as stiff as the substep lets it be. */
 static PetscReal stiffness(const Model *m, const ContactLaw *law)
 {
-  if (law->kind != CONTACT_BONDED) return 1;
-  return PetscMax(1, 0.8 * (2 / PetscSqr(case_courant(&m->c->analysis)) - 1));
+  const AnalysisSpec *a = &m->c->analysis;
+  if (law->kind != CONTACT_BONDED) return a->contact;
+  return PetscMax(1, CONTACT_MARGIN * (2 / PetscSqr(case_courant(a)) - 1));
 }
 
 /* One behind the other; 0: a wall, which does not give. */
@@ -80,6 +80,7 @@ static void push(const Model *m, const Explicit *e, ContactPoint *c)
 static PetscErrorCode Limit(const Model *m, const Explicit *e)
 {
   const PetscReal dt = case_courant(&m->c->analysis) * e->critical;
+  const PetscReal most = MOST * (1 - PetscSqr(case_courant_of_musl(&m->c->analysis)));
   const Contact *s = m->contact;
   PetscReal *at = e->springs;
 
@@ -99,7 +100,7 @@ static PetscErrorCode Limit(const Model *m, const Explicit *e)
       const PetscReal *node = at + 2 * s->node[k];
       if (node[1] > 1e-300) square += PetscAbsReal(s->N[k]) * node[0] / node[1];
     }
-    c->borne = square * dt * dt > MOST ? MOST / (square * dt * dt) : 1;
+    c->borne = square * dt * dt > most ? most / (square * dt * dt) : 1;
     c->law.penalty *= c->borne;
     c->law.along *= c->borne;
   }
