@@ -57,6 +57,12 @@ static PetscReal impedance_of(const ContactPoint *c)
   return behind(PetscSqrtReal(c->modulus[0] * c->density[0]), PetscSqrtReal(c->modulus[1] * c->density[1]));
 }
 
+/* A wall that appears when the run's step ends has no part in it. */
+static PetscBool is_still_to_come(const Model *m, const Explicit *e, const ContactPoint *c)
+{
+  return (PetscBool)(c->wall < m->contact->n_walls && !wall_stands(m->walls, c->wall, e->time));
+}
+
 /* Force of one wall on one point. Between substeps it keeps what its law starts from. */
 static void push(const Model *m, const Explicit *e, ContactPoint *c)
 {
@@ -71,7 +77,7 @@ static void push(const Model *m, const Explicit *e, ContactPoint *c)
   c->gap = place.gap;
   if (e->dt > 0 && c->wall < m->contact->n_walls)
     wall_motion(m->walls, c->wall, e->time, e->time + e->dt, c->x, c->swept);
-  if (c->gone && e->dt > 0) return;
+  if (e->dt > 0 ? c->gone : is_still_to_come(m, e, c)) return;
   c->state = contact_law(&c->law, &place, nowhere, &before, &c->now, NULL);
 }
 
@@ -151,7 +157,8 @@ static void move_of(const Model *m, const Explicit *e, const ContactPoint *c, Pe
 }
 
 /* Work that sliding by s takes: of the mean of the force and of that which it leads to, since force and motion stand
- * half a substep apart; what is bonded does not slide. */
+ * half a substep apart; what is bonded or sticks does not slide, and what its springs have stored when it opens goes the
+ * way of all springs. */
 static PetscReal sliding_work(const ContactPoint *c, const PetscReal s[3])
 {
   PetscReal next[3], square = 0, work = 0;
@@ -159,7 +166,7 @@ static PetscReal sliding_work(const ContactPoint *c, const PetscReal s[3])
   const PetscReal most = contact_most(&c->law, c->now.pressure), size = PetscSqrtReal(square);
   const PetscReal part = size > most ? most / size : 1;
   for (int d = 0; d < 3; ++d) work -= 0.5 * (c->now.shear[d] + part * next[d]) * s[d];
-  return c->law.kind == CONTACT_BONDED ? 0 : work;
+  return c->law.kind == CONTACT_FRICTION ? work : 0;
 }
 
 /* What its law starts from in the next substep; after the last one of the run's step, the force itself. move: of
