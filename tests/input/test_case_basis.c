@@ -108,7 +108,7 @@ static const struct {
   {MOVING("fem", ""), "thesis", ""},
   {MOVING("gmm", ""), "thesis", ""},
   {PLAIN, "thesis", ""},
-  {EXPLICIT(""), "consistent", "consistent, the default where no law yields and nothing rubs; scheme explicit"},
+  {EXPLICIT(""), "consistent", "consistent, the default where no law yields; scheme explicit"},
   {EXPLICIT(", update: usl"), "thesis", "thesis"},
   {EXPLICIT("") YIELDS, "thesis", "thesis, the default where a law yields"},
 };

@@ -219,8 +219,9 @@ PetscErrorCode WallsAccount(Model *m, Explicit *e)
   e->friction = 0;
   if (!s) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(s->n_partners, &area, s->n_partners, &deepest));
+  PetscCall(ContactCover(s, m->grid));
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (c->state != CONTACT_OPEN) area[c->wall] += c->section;
+    if (c->covered) area[c->wall] += c->section;
     if (c->state != CONTACT_OPEN) deepest[c->wall] = PetscMax(deepest[c->wall], -c->gap);
   }
   for (PetscInt k = 0; k < s->n_partners; ++k) e->friction += e->rubbed[k];

@@ -132,7 +132,7 @@ static void let_go_of_springs(const Case *c, const Case *from, const Column *con
   const PetscInt sides = contact_sides(c), side = contact_kept_side(dim, sides);
   const PetscInt64 n = rows * (c->n_walls + c->n_interfaces) * sides;
   PetscReal *kept = contact->data;
-  if (c->analysis.contact == from->analysis.contact) return;
+  if (c->analysis.type != ANALYSIS_EXPLICIT || c->analysis.contact == from->analysis.contact) return;
   for (PetscInt64 k = 0; k < n; ++k)
     if (contact_is_sprung(kept[k * side + KEPT_STATE])) kept[k * side + KEPT_STATE] -= CONTACT_SPRING;
 }

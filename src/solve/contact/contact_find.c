@@ -132,7 +132,7 @@ void contact_take_section(const Contact *s, const NodalScene *scene, PetscReal s
   const PetscReal adhesion =
     wall ? scene->c->walls[c->wall].adhesion : scene->c->interfaces[c->wall - s->n_walls].adhesion;
   c->section = c->cover * section;
-  c->bond = divisor > 0 ? adhesion / divisor * c->section : 0;
+  c->bond = c->own_bond = divisor > 0 ? adhesion / divisor * c->section : 0;
 }
 
 /* A bonded interface holds what touches at the start, and nothing that comes later. */

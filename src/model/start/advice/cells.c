@@ -11,7 +11,7 @@ static PetscBool has_equal_shares(PetscInt points_per_cell)
   return points_per_cell == 1 || points_per_cell == 3 || points_per_cell == 4 || points_per_cell == 8;
 }
 
-/* Nodes of gmm are where cells were, and the room that a point has is theirs. */
+/* Nodes of gmm are where cells were, and the room that a point has is theirs: in rings, what it has of their section. */
 static PetscErrorCode AdviseUneven(const Model *m, PetscInt b, Diag *diag)
 {
   const Points *points = m->points;
@@ -22,8 +22,10 @@ static PetscErrorCode AdviseUneven(const Model *m, PetscInt b, Diag *diag)
   if (!has_equal_shares(m->c->bodies[b].points_per_cell)) PetscFunctionReturn(0);
   for (PetscInt p = 0; p < points->n; ++p) {
     if (points->body[p] != b) continue;
-    range[0] = PetscMax(range[0], -points->real[POINT_VOLUME][p]);
-    range[1] = PetscMax(range[1], points->real[POINT_VOLUME][p]);
+    const PetscReal room =
+      points->real[POINT_VOLUME][p] / kinematics_weight(m->c->kinematics, *point_real(points, POINT_X, p));
+    range[0] = PetscMax(range[0], -room);
+    range[1] = PetscMax(range[1], room);
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPI_MAX, m->comm));
   if (range[1] <= -UNEVEN * range[0]) PetscFunctionReturn(0);
