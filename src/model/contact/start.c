@@ -100,6 +100,7 @@ static PetscBool look_at_wall(Model *m, PetscInt k, PetscBool fits, Worst *insid
   PetscBool any = PETSC_FALSE;
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal *x = point_real(m->points, POINT_X, p);
+    if (!contact_meets_body(m->c, k, m->points->body[p])) continue;
     const int side = wall_side(m->walls, k, m->time, x);
     const PetscReal far = PetscMax(contact_farthest(m->points, p), fits ? m->grid->smallest : 0);
     const PetscInt n = wall_sides(m->walls, k, m->time, x, far, side, place);
@@ -229,6 +230,7 @@ PetscErrorCode WallsAppear(const Model *m, StepReport *report)
     if (!(m->c->walls[k].from > 0) || !wall_comes(m->walls, k, t) || wall_stands(m->walls, k, t)) continue;
     for (PetscInt p = 0; p < m->points->n; ++p) {
       const PetscReal *x = point_real(m->points, POINT_X, p);
+      if (!contact_meets_body(m->c, k, m->points->body[p])) continue;
       if (wall_near(m->walls, k, t, x, 0, 0, &place)) take_worse(m, -place.gap, x, &inside);
     }
     PetscCall(FindWorst(m, &inside));

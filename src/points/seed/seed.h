@@ -74,6 +74,10 @@ void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscIn
 PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section,
                      const SeedRule *rule, PetscInt q, const unsigned char *outer);
 
+/* Of a part of a rectangle or brick that the surface cuts: to the sides of the body that are its ends along the axes,
+ * or to the corner or edge between them; 0 where none is farther than the nearest surface. */
+void seed_corner_of_part(const Seeding *s, CellType type, const PetscReal *x, const SeedPart *part,
+                         const PetscReal *position, PetscReal reach, PetscReal *corner);
 /* From the same point to these sides, or to the corner or edge where several of them meet at right angles; of others to
  * the nearest; 0 inside. */
 void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, const SeedRule *rule, PetscInt q,

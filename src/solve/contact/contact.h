@@ -180,6 +180,8 @@ PetscBool contact_is_strained(const Points *points, PetscInt p, PetscReal limit)
 /* Position of a contact point with the field's increments, times `whole`. */
 void contact_place(const Contact *contact, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3]);
 
+/* Does wall k meet this body? */
+PetscBool contact_meets_body(const Case *c, PetscInt k, PetscInt body);
 /* Collective. Which contact points touch after the step (ContactPoint.covered), with or without a force. */
 PetscErrorCode ContactCover(Contact *contact, const Grid *grid);
 /* Collective. What these may bear by adhesion, those bear that have the force beside them: at the start of the step, or
