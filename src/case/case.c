@@ -232,11 +232,16 @@ PetscBool case_is_static(const AnalysisSpec *analysis)
   return analysis->type != ANALYSIS_DYNAMIC && analysis->type != ANALYSIS_EXPLICIT;
 }
 
+static PetscReal bears(const AnalysisSpec *analysis) { return analysis->update == EXPLICIT_USL ? 0.75 : 1; }
+
+/* Half a layer of cells between a spring and the next cell has omega^2 = 2 (1 + stiffness) c^2 / h^2. */
 PetscReal case_courant(const AnalysisSpec *analysis)
 {
-  if (analysis->courant > 0) return analysis->courant;
-  return analysis->update == EXPLICIT_USL ? 0.6 : 0.8;
+  const PetscReal usual = analysis->courant > 0 ? analysis->courant : 0.8 * bears(analysis);
+  return PetscMin(usual, bears(analysis) * PetscSqrtReal(2 / (1 + analysis->contact / CONTACT_MARGIN)));
 }
+
+PetscReal case_courant_of_musl(const AnalysisSpec *analysis) { return case_courant(analysis) / bears(analysis); }
 
 PetscBool case_seeks(const AnalysisSpec *analysis)
 {

@@ -355,6 +355,7 @@ typedef struct {
   PetscReal travel;
   PetscReal courant;     /* explicit: share of the critical step that is taken; 0: as much as `update` bears */
   ExplicitUpdate update; /* explicit */
+  PetscReal contact;     /* explicit: stiffness of springs of contact, over that of a cell */
   char *scheme;          /* of dynamics, by its name; NULL: Newmark's, with bossak Bossak's */
   PetscReal beta, gamma; /* Newmark */
   PetscReal bossak;      /* alpha_B in [-1/3, 0] */
@@ -518,8 +519,11 @@ PetscReal analysis_usual_beta(const AnalysisSpec *analysis);
 PetscReal analysis_usual_gamma(const AnalysisSpec *analysis);
 PetscBool analysis_tunes_newmark(const AnalysisSpec *analysis);
 /* Explicit dynamics: share of the critical step that is taken. musl bears all of it, usl two thirds (docs/theory.md,
- * "Explicit dynamics"). */
+ * "Explicit dynamics"). Springs of contact that are stiffer than cells want a smaller one. */
 PetscReal case_courant(const AnalysisSpec *analysis);
+#define CONTACT_MARGIN 0.8 /* of the stiffness that a substep bears */
+/* The same of what `update` bears as musl bears 1. */
+PetscReal case_courant_of_musl(const AnalysisSpec *analysis);
 /* Is something sought after `end`, when all loads are on: a factor of safety, a limit load? */
 PetscBool case_seeks(const AnalysisSpec *analysis);
 /* Is that one of the fields of states? */

@@ -78,7 +78,7 @@ const char *default_transfer(const Case *c, const char **why)
   if (implicit && case_has_contact(c, CONTACT_FRICTION)) return thesis->name;
   *why = "; consistent, which keeps more energy, goes with scheme midpoint";
   if (implicit && !method_transfers(c, slopes, basis_find(c->basis.kind))) return thesis->name;
-  *why = ", the default where no law yields and nothing rubs";
+  *why = implicit ? ", the default where no law yields and nothing rubs" : ", the default where no law yields";
   return slopes->name;
 }
 

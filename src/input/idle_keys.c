@@ -16,6 +16,10 @@ static PetscBool has_inertia(const Case *c, PetscInt i) { return (void)i, !case_
 /* Of a body: looked at in the stage with which it comes alone, since it has nothing left of it later. */
 static PetscBool starts(const Case *c, PetscInt i) { return has_inertia(c, i); }
 static PetscBool is_explicit(const Case *c, PetscInt i) { return (void)i, c->analysis.type == ANALYSIS_EXPLICIT; }
+static PetscBool has_springs(const Case *c, PetscInt i)
+{
+  return is_explicit(c, i) && c->n_walls + c->n_interfaces > 0;
+}
 static PetscBool iterates(const Case *c, PetscInt i) { return !is_explicit(c, i); }
 static PetscBool is_implicit(const Case *c, PetscInt i) { return has_inertia(c, i) && iterates(c, i); }
 static PetscBool is_mixed(const Case *c, PetscInt i) { return (void)i, case_is_mixed(c); }
@@ -94,6 +98,8 @@ static const IdleKey keys[] = {
   {NULL, "analysis.travel", iterates, OF_STEPS},
   {NULL, "analysis.courant", is_explicit, OF_EXPLICIT},
   {NULL, "analysis.update", is_explicit, OF_EXPLICIT},
+  {NULL, "analysis.contact_stiffness", has_springs, "only walls and interfaces of explicit dynamics are springs",
+   "leave it out"},
   {NULL, "newton.residual", iterates, NO_EQUATIONS},
   {NULL, "newton.residual_absolute", iterates, NO_EQUATIONS},
   {NULL, "newton.increment", iterates, NO_EQUATIONS},

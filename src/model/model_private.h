@@ -183,6 +183,8 @@ PetscErrorCode WallsStart(Model *model, Diag *diag);
 PetscBool wall_stood(const WallSpec *wall, const Case *c, const Case *from);
 /* Collective. Walls that a stage brings, or puts elsewhere, stand where no material is. */
 PetscErrorCode WallsCome(Model *model, const Case *from, Diag *diag);
+/* Collective. The step is refused (STEP_TOO_SMALL) where a wall appears amidst material. */
+PetscErrorCode WallsAppear(const Model *model, StepReport *report);
 /* contact/interfaces.c. Collective. What no interfaces can be made of, and bodies that go through each
  * other at the start. */
 PetscErrorCode InterfacesStart(Model *model, Diag *diag);

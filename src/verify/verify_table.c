@@ -72,7 +72,7 @@ static void write_agreement(FILE *out, const Verification *v, PetscInt first, Pe
     if (!strcmp(v->rows[k].series->name, agree->series) && !PetscIsNanReal(v->rows[k].difference))
       worst = PetscMax(worst, v->rows[k].difference);
   if (worst >= 0)
-    fprintf(out, "  %s agrees with %s to %.1e (allowed %.0e)\n", agree->series, agree->with, (double)worst,
+    fprintf(out, "  %s agrees with %s to %.1e (allowed %.2g)\n", agree->series, agree->with, (double)worst,
             (double)agree->tolerance);
 }
 

@@ -108,7 +108,7 @@ static const struct {
   {MOVING("fem", ""), "thesis", ""},
   {MOVING("gmm", ""), "thesis", ""},
   {PLAIN, "thesis", ""},
-  {EXPLICIT(""), "consistent", "consistent, the default where no law yields and nothing rubs; scheme explicit"},
+  {EXPLICIT(""), "consistent", "consistent, the default where no law yields; scheme explicit"},
   {EXPLICIT(", update: usl"), "thesis", "thesis"},
   {EXPLICIT("") YIELDS, "thesis", "thesis, the default where a law yields"},
 };
@@ -244,6 +244,7 @@ static void Idle(void **state)
     {QUICK(", courant: 0.5, update: usl, transfer: thesis, damping: 1") BEAM(""), NULL, {NULL}},
     /* what was written for another choice than a series made; and what comes with that choice, or after it */
     {STILL(", courant: 0.5") BEAM("") "newton: {residual: 1e-3}\n", "analysis.type=explicit", {NULL}},
+    {QUICK(", contact_stiffness: 5") BEAM(""), NULL, {"analysis.contact_stiffness"}},
     {QUICK("") BEAM("") "newton: {residual: 1e-3}\n", "newton.increment=1e-3", {"newton.residual", "newton.increment"}},
     /* a stage that says its type says all of its analysis */
     {STILL("") BEAM("") STABLE "stages: [{name: a}, {name: b, analysis: {type: dynamic, end: 1, step: 0.1}}]\n",

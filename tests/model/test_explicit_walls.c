@@ -148,6 +148,52 @@ static void test_lifts(void **state)
   CALL(ModelDestroy(&m));
 }
 
+/* A block that two smooth walls press together by d: the springs on both sides are in line with it, p = E' d / (L + 2 h E'
+ * / (k M)), and as much softer than a cell as they are told. */
+static void test_pressed(void **state)
+{
+  static const PetscReal stiffness[] = {1, 1.7, 5.6, 17};
+  static const Block pressed[] = {{"gimp", CELL_QUADRILATERAL, &kinematics_plane_strain, 0},
+                                  {"cell", CELL_TRIANGLE, &kinematics_plane_strain, 0},
+                                  {"cell", CELL_HEXAHEDRON, &kinematics_3d, 0}};
+  const PetscReal length = 0.5, way = 0.005;
+  (void)state;
+  EACH_OF (i, pressed)
+    EACH_OF (k, stiffness) {
+      const Block *r = pressed + i;
+      const int up = r->cell == CELL_HEXAHEDRON ? 2 : 1;
+      MotionSpec down = {.kind = MOTION_VELOCITY};
+      Bench b;
+      WallSpec wall[2];
+      standing(&b, r, 0, wall);
+      b.c.gravity[up] = 0;
+      b.c.analysis.courant = 0.8;
+      b.c.analysis.contact = stiffness[k];
+      b.c.analysis.damping = 40;
+      wall[1] = wall[0];
+      wall[1].name = (char *)"press";
+      wall[1].shape.point[up] += length;
+      wall[1].shape.normal[up] = -1;
+      down.component[up] = PETSC_TRUE;
+      down.value[up] = -way / 0.5;
+      wall[1].n_motions = 1;
+      wall[1].motions = &down;
+      b.c.n_walls = 2;
+      Model *m = bench_model(&b, PETSC_COMM_WORLD);
+      while (m->time < 0.5 - 1e-9) model_step(m, PETSC_MAX_REAL);
+      const PetscReal free = 1e6 / (up == 2 ? 1 : 1 - 0.09), M = m->materials[0].wave_modulus, area = up == 2 ? 0.5 : 1;
+      const PetscReal spring = stiffness[k] * M / 0.25, p = way / (length / free + 2 / spring);
+      const PetscReal force = measure(m, "wall_force", NULL, up), deep = measure(m, "contact", "penetration", 0);
+      PetscPrintf(PETSC_COMM_WORLD, "%s cell %d, %g: %.6g N of %.6g, %.4g mm deep of %.4g, %d substeps\n", r->basis,
+                  (int)r->cell, (double)stiffness[k], (double)force, (double)(p * area), (double)(1e3 * deep),
+                  (double)(1e3 * p / spring), (int)m->total_iterations);
+      CHECK_CLOSE(force, p * area, 0.03 * p * area);
+      /* the deepest of all: stresses of triangles scatter */
+      if (r->cell != CELL_TRIANGLE) CHECK_CLOSE(deep, p / spring, 0.05 * p / spring);
+      CALL(ModelDestroy(&m));
+    }
+}
+
 /* A wall that is there until 0.1 s: what it gave stays, and then there is free fall. */
 static void test_vanishes(void **state)
 {
@@ -287,10 +333,10 @@ static void test_laps(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_slides),  cmocka_unit_test(test_rests),
-                                     cmocka_unit_test(test_lifts),   cmocka_unit_test(test_vanishes),
-                                     cmocka_unit_test(test_hangs),   cmocka_unit_test(test_ranks),
-                                     cmocka_unit_test(test_resumed), cmocka_unit_test(test_laps)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_slides),   cmocka_unit_test(test_rests), cmocka_unit_test(test_lifts),
+    cmocka_unit_test(test_vanishes), cmocka_unit_test(test_hangs), cmocka_unit_test(test_ranks),
+    cmocka_unit_test(test_resumed),  cmocka_unit_test(test_laps),  cmocka_unit_test(test_pressed)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

@@ -40,6 +40,13 @@ for ranks in 2 3; do
     awk 'NR > 1 { d = $2 - $5; f = $3 - $6; if (d * d > 1e-16 || f * f > 1e-2) exit 1 }' || fail "on $ranks ranks otherwise"
 done
 
+# Springs that become stiffer or softer from stage to stage go on with the force that they had: nothing leaps by the 1.8 mm
+# that material is deep in soft ones (it was 10 mm and twice the weight).
+sed 's/  - {name: again.*/  - {name: stiff, analysis: {end: 0.2, contact_stiffness: 17}}\n  - {name: soft, analysis: {end: 0.2, contact_stiffness: 1}}/' block.yaml >stiffer.yaml
+expect "stiffer and softer" 0 "$talus" run stiffer.yaml --out stiffer
+awk -F, 'NR == 3 { top = $4 } NR > 3 && ($5 < 9710 || $5 > 9910 || $6 > 0.005 || $4 / top < 0.96 || $4 / top > 1.04) { bad = 1; print }
+  END { exit bad || NR < 20 }' stiffer/history.csv >out.txt || fail "$name: does not stand"
+
 # On another body, and bonded to a wall that it hangs from: what bears it does so through all stages.
 sed -e 's/^bodies:/&\n  - {name: base, shape: {box: {min: [0.25, 0], max: [1.75, 0.5]}}, points_per_cell: 4, material: rubber}/' \
   -e 's/^walls:/boundary: [{name: ground, on: {y: 0}, fix: [x, y]}]\ninterfaces:/' -e 's/wall_force: y, of: {wall: floor}/interface_force: y, of: {interface: floor}/' \

@@ -68,7 +68,10 @@ says b/sweep.csv ",interrupted,"
 ls b/young=3e5/checkpoint_*.h5 >/dev/null || fail "$name: no checkpoint"
 name="killed"
 sweep_block >out.txt 2>err.txt </dev/null &
-sleep 0.5
+for i in $(seq 400); do # as soon as they run: on a quick machine they are soon done
+  pgrep -f -- "--resume b/young" >/dev/null && break
+  sleep 0.02
+done
 sweep=$(pgrep -P $! 2>/dev/null || echo $!)
 kill -KILL $sweep 2>/dev/null
 wait 2>/dev/null

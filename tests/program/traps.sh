@@ -498,5 +498,15 @@ for ranks in 1 2; do
   awk -F, 'END { exit !(($3 / 120 - 1) ^ 2 < 1e-18 && ($4 / 181.883095 - 1) ^ 2 < 1e-12 && $5 < 1e-3 && $6 < 39.6) }' wedge/history.csv ||
     fail "$name: $(tail -n 1 wedge/history.csv)"
 done
+# A triangle that is pulled to one side all around gains all of the impulse, however far it goes: its points' nodes, too,
+# where there is nothing around that could lead them.
+sed -i -e 's/analysis: .*/analysis: {type: explicit, end: 0.8, step: 0.01}/' -e 's/polygon: .*, material: m.*/polygon: [[0.03, 0.03], [1.03, 0.31], [0.2, 1.1]]}, material: m}]/' \
+  -e 's/value: .*/value: [1000, 0]}]}/' -e 's/max: \[3, 3\]/max: [5, 3]/' -e 's/along:/tip: {displacement: x, of: {tracer: [0.2, 1.099]}}, middle: {displacement: x, of: {tracer: [0.4, 0.5]}}, along:/' case.yaml
+for ranks in 1 2; do
+  expect "a triangle on $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out triangle --force --quiet
+  ! grep -q "left behind" err.txt || fail "$name: loses its load"
+  # circumference: sqrt(1 + 0.28^2) + sqrt(0.83^2 + 0.79^2) + sqrt(0.17^2 + 1.07^2); the tip is pulled ahead
+  awk -F, 'END { exit !(($5 / 2614.19441 - 1) ^ 2 < 1e-16 && $3 > $4 && $3 < 1.1 * $4) }' triangle/history.csv || fail "$name: $(tail -n 1 triangle/history.csv)"
+done
 
 finish

@@ -312,4 +312,38 @@ expect "millimetres" 0 "$talus" check units.yaml --set 'loads.gravity=[0, -9810]
 says err.txt "the weight of 'grains' is 4.3" "gravity in m/s2"
 expect "kPa" 0 "$talus" check units.yaml --set materials.grains.density=1.6e-9
 says err.txt "waves would run at" "densities are in kg/m3"
+# --- far from the origin, as on a map ---
+# A block that walls hold, tilted and pushed, near the origin and at 5e5, 5e6 m: the same to what places are rounded by.
+far() {
+  cat <<END
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 4}
+grid: {box: {min: [$(($1 - 2)), $(($2 - 2))], max: [$(($1 + 3)), $(($2 + 3))]}, size: 0.125}
+bodies: [{name: b, shape: {box: {min: [$1, $2], max: [$(($1 + 1)), $(($2 + 1))]}}, points_per_cell: 4, material: m}]
+materials: {m: {law: neo-hookean, density: 2000, young: 1e7, poisson: 0.2}}
+loads: {gravity: [-1, -10]}
+walls:
+  - {name: floor, shape: {half-space: {point: [$1, $2], normal: [0, 1]}}, friction: 0.3}
+  - {name: push, shape: {half-space: {point: [$1, $2], normal: [1, 0]}}, motion: [{displacement: {x: 0.01}}]}
+measures: {d: {displacement: y, of: {tracer: [$1.5, $(($2 + 1))]}}, low: {wall_force: y, of: {wall: floor}}, push: {wall_force: x, of: {wall: push}}}
+END
+}
+far 0 0 >near.yaml
+far 500000 5000000 >far.yaml
+for case in near far; do expect "$case" 0 "$talus" run $case.yaml --out $case --quiet; done
+paste -d , near/history.csv far/history.csv |
+  awk -F, 'NR > 1 { d = $3 - $8; f = $4 - $9; g = $5 - $10; if (d * d > 1e-14 || f * f > 1e-4 || g * g > 1e-2) exit 1 } END { exit NR != 6 || $4 < 19999 || $5 < 7990 }' ||
+  fail "far from the origin otherwise: $(tail -n 1 near/history.csv) and $(tail -n 1 far/history.csv)"
+
+# --- walls that appear amidst material ---
+for type in dynamic explicit; do
+  sed -e "s/type: static, steps: 4/type: $type, end: 0.1, step: 0.01/" -e 's/normal: \[1, 0\]}}, motion.*/normal: [1, 0]}}, from: 0.05}/' -e 's/point: \[0, 0\], normal: \[1, 0\]/point: [0.1, 0], normal: [1, 0]/' near.yaml >gate.yaml
+  expect "a gate, $type" 1 "$talus" run gate.yaml --out gate-$type --quiet
+  says err.txt "the run gave up: wall 'push' comes at t = 0.05 s where material is: the point at (0.0" "m inside it"
+  [ "$(tail -n 1 gate-$type/history.csv | cut -d, -f5)" = 0 ] || fail "$name: it pushed"
+  # one that stands beside material is none
+  expect "beside, $type" 0 "$talus" run gate.yaml --set 'walls[1].shape.half-space.point=[-0.2, 0]' --out beside-$type --quiet
+done
+
 finish

@@ -21,6 +21,17 @@ static inline void lu_swap(PetscInt band, PetscInt k, PetscInt pivot, PetscInt e
   b[k] = first;
 }
 
+/* sum_j a_j b_j in four parts, none of which waits for another. */
+static inline PetscReal lu_sum(PetscInt n, const PetscReal *a, const PetscReal *b)
+{
+  PetscReal part[4] = {0, 0, 0, 0};
+  PetscInt j = 0;
+  for (; j + 4 <= n; j += 4)
+    for (int l = 0; l < 4; ++l) part[l] += a[j + l] * b[j + l];
+  for (; j < n; ++j) part[0] += a[j] * b[j];
+  return (part[0] + part[1]) + (part[2] + part[3]);
+}
+
 /* b = A^-1 b by elimination with the largest pivot of each column. A (n rows of lu_width, zero beyond the band and
  * n; band < n for a full matrix) is lost. PETSC_FALSE if it is singular or holds something that is no number. */
 static inline PetscBool lu_solve(PetscInt n, PetscInt band, PetscReal *restrict A, PetscReal *restrict b)
@@ -44,8 +55,8 @@ static inline PetscBool lu_solve(PetscInt n, PetscInt band, PetscReal *restrict 
     }
   }
   for (PetscInt i = n; i-- > 0;) {
-    for (PetscInt j = i + 1; j < PetscMin(n, i + 2 * band + 1); ++j) b[i] -= A[lu_at(band, i, j)] * b[j];
-    b[i] /= A[lu_at(band, i, i)];
+    const PetscReal *row = A + lu_at(band, i, i);
+    b[i] = (b[i] - lu_sum(PetscMin(n, i + 2 * band + 1) - i - 1, row + 1, b + i + 1)) / row[0];
   }
   return PETSC_TRUE;
 }

@@ -57,10 +57,11 @@ static PetscReal leads_by_mass(const Discretisation *s)
 }
 
 /* By mass, what is enough depends on the place: who wants to follow by its own measure, which is in `ways` meanwhile,
- * leads nobody by another's. What is handed on to it would be handed on no further. */
+ * leads nobody by another's. What is handed on to it would be handed on no further, nor would it from where there is
+ * nothing around, which is enough there. */
 static PetscBool may_lead(const Extension *e, PetscInt node, PetscReal enough)
 {
-  return (PetscBool)(e->fill[node] >= enough && !(e->by_mass && e->ways[node] > 0));
+  return (PetscBool)(e->fill[node] > 0 && e->fill[node] >= enough && !(e->by_mass && e->ways[node] > 0));
 }
 
 static PetscReal find_leads(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[LATTICE])

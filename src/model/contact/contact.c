@@ -237,9 +237,10 @@ PetscErrorCode ContactSurvey(Model *m)
   if (!s) PetscFunctionReturn(0);
   const PetscInt n = s->n_partners;
   PetscCall(PetscCalloc2(2 * n, &sums, n, &deepest));
+  PetscCall(ContactCover(m->contact, m->grid));
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     sums[c->wall] += point_work(m, c).sliding;
-    if (c->state == CONTACT_OPEN) continue;
+    if (!c->covered) continue;
     take_section(m, &scene, c);
     sums[n + c->wall] += c->section;
     deepest[c->wall] = PetscMax(deepest[c->wall], -c->gap);

@@ -8,7 +8,8 @@
 #define PART 0.5     /* likewise, as its volume and its share of the surface tell it */
 #define SHARP \
   0.9 /* distance of a wall over the radius of the level surface there: 1 before an edge, 2 before a corner */
-#define DENT 0.01 /* of a cell: a surface that is taken back by more to fit a wall may be one, too */
+#define AMIDST 0.1 /* of a cell: what is so deep in a wall that appears would be thrown out of it */
+#define DENT 0.01  /* of a cell: a surface that is taken back by more to fit a wall may be one, too */
 
 /* The worst of something over points: how much, 0 if there is none, and where. */
 typedef struct {
@@ -99,6 +100,7 @@ static PetscBool look_at_wall(Model *m, PetscInt k, PetscBool fits, Worst *insid
   PetscBool any = PETSC_FALSE;
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal *x = point_real(m->points, POINT_X, p);
+    if (!contact_meets_body(m->c, k, m->points->body[p])) continue;
     const int side = wall_side(m->walls, k, m->time, x);
     const PetscReal far = PetscMax(contact_farthest(m->points, p), fits ? m->grid->smallest : 0);
     const PetscInt n = wall_sides(m->walls, k, m->time, x, far, side, place);
@@ -213,6 +215,31 @@ PetscErrorCode WallsCome(Model *m, const Case *from, Diag *diag)
     if (m->c->walls[k].absent || wall_stood(&m->c->walls[k], m->c, from)) continue;
     (void)look_at_wall(m, k, PETSC_FALSE, &inside, &dent);
     PetscCall(TellThrough(m, k, &inside, diag));
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode WallsAppear(const Model *m, StepReport *report)
+{
+  const PetscReal t = m->time;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; m->walls && k < m->c->n_walls && report->outcome == STEP_ACCEPTED; ++k) {
+    Worst inside = {0};
+    WallPlace place;
+    if (!(m->c->walls[k].from > 0) || !wall_comes(m->walls, k, t) || wall_stands(m->walls, k, t)) continue;
+    for (PetscInt p = 0; p < m->points->n; ++p) {
+      const PetscReal *x = point_real(m->points, POINT_X, p);
+      if (!contact_meets_body(m->c, k, m->points->body[p])) continue;
+      if (wall_near(m->walls, k, t, x, 0, 0, &place)) take_worse(m, -place.gap, x, &inside);
+    }
+    PetscCall(FindWorst(m, &inside));
+    if (inside.depth <= AMIDST * m->grid->smallest) continue;
+    report->outcome = STEP_TOO_SMALL;
+    snprintf(report->reason, sizeof report->reason,
+             "wall '%s' comes at t = %g s where material is: the point at (%g, %g, %g) m is %.3g m inside it",
+             m->c->walls[k].name, (double)t, (double)inside.x[0], (double)inside.x[1], (double)inside.x[2],
+             (double)inside.depth);
   }
   PetscFunctionReturn(0);
 }

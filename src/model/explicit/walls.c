@@ -15,9 +15,9 @@
 #include "base/math/vector.h"
 
 #define DASHPOT 0.5 /* of the impedance of the material */
-/* (omega dt)^2 of springs alone on the nodes: a full cell beside a wall has 0.64 with a Courant number of 0.8, and 4 is
- * unstable, of which waves have up to 2.56 (docs/theory.md, section 73) */
-#define MOST 1.3
+/* (omega dt)^2 of springs alone on the nodes: 4 is unstable, of which waves have up to 4 C^2, C the Courant number; of
+ * what that leaves (docs/theory.md, section 73). A full cell beside a wall has C^2 times the stiffness of contact. */
+#define MOST 3.61
 
 static PetscReal *kept_of(const Model *m, const ContactPoint *c) { return contact_kept_of(m->contact, m->points, c); }
 
@@ -39,12 +39,12 @@ static PetscReal beside_spring(const Explicit *e, const ContactPoint *c)
   return c->before == CONTACT_OPEN ? 0 : kept + c->law.penalty * c->open;
 }
 
-/* Over that of a cell: what is bonded bends where it is held, and its spring is as stiff as the substep lets it be:
- * half a layer of cells, rho A h / 2, between it and the next cell has omega^2 = 2 (1 + stiffness) c^2 / h^2. */
+/* Over that of a cell: what is bonded bends where it is held, and its spring is as stiff as the substep lets it be. */
 static PetscReal stiffness(const Model *m, const ContactLaw *law)
 {
-  if (law->kind != CONTACT_BONDED) return 1;
-  return PetscMax(1, 0.8 * (2 / PetscSqr(case_courant(&m->c->analysis)) - 1));
+  const AnalysisSpec *a = &m->c->analysis;
+  if (law->kind != CONTACT_BONDED) return a->contact;
+  return PetscMax(1, CONTACT_MARGIN * (2 / PetscSqr(case_courant(a)) - 1));
 }
 
 /* One behind the other; 0: a wall, which does not give. */
@@ -55,6 +55,12 @@ static PetscReal modulus_of(const ContactPoint *c) { return behind(c->modulus[0]
 static PetscReal impedance_of(const ContactPoint *c)
 {
   return behind(PetscSqrtReal(c->modulus[0] * c->density[0]), PetscSqrtReal(c->modulus[1] * c->density[1]));
+}
+
+/* A wall that appears when the run's step ends has no part in it. */
+static PetscBool is_still_to_come(const Model *m, const Explicit *e, const ContactPoint *c)
+{
+  return (PetscBool)(c->wall < m->contact->n_walls && !wall_stands(m->walls, c->wall, e->time));
 }
 
 /* Force of one wall on one point. Between substeps it keeps what its law starts from. */
@@ -71,7 +77,7 @@ static void push(const Model *m, const Explicit *e, ContactPoint *c)
   c->gap = place.gap;
   if (e->dt > 0 && c->wall < m->contact->n_walls)
     wall_motion(m->walls, c->wall, e->time, e->time + e->dt, c->x, c->swept);
-  if (c->gone && e->dt > 0) return;
+  if (e->dt > 0 ? c->gone : is_still_to_come(m, e, c)) return;
   c->state = contact_law(&c->law, &place, nowhere, &before, &c->now, NULL);
 }
 
@@ -80,6 +86,7 @@ static void push(const Model *m, const Explicit *e, ContactPoint *c)
 static PetscErrorCode Limit(const Model *m, const Explicit *e)
 {
   const PetscReal dt = case_courant(&m->c->analysis) * e->critical;
+  const PetscReal most = MOST * (1 - PetscSqr(case_courant_of_musl(&m->c->analysis)));
   const Contact *s = m->contact;
   PetscReal *at = e->springs;
 
@@ -99,7 +106,7 @@ static PetscErrorCode Limit(const Model *m, const Explicit *e)
       const PetscReal *node = at + 2 * s->node[k];
       if (node[1] > 1e-300) square += PetscAbsReal(s->N[k]) * node[0] / node[1];
     }
-    c->borne = square * dt * dt > MOST ? MOST / (square * dt * dt) : 1;
+    c->borne = square * dt * dt > most ? most / (square * dt * dt) : 1;
     c->law.penalty *= c->borne;
     c->law.along *= c->borne;
   }
@@ -150,7 +157,8 @@ static void move_of(const Model *m, const Explicit *e, const ContactPoint *c, Pe
 }
 
 /* Work that sliding by s takes: of the mean of the force and of that which it leads to, since force and motion stand
- * half a substep apart; what is bonded does not slide. */
+ * half a substep apart; what is bonded or sticks does not slide, and what its springs have stored when it opens goes the
+ * way of all springs. */
 static PetscReal sliding_work(const ContactPoint *c, const PetscReal s[3])
 {
   PetscReal next[3], square = 0, work = 0;
@@ -158,7 +166,7 @@ static PetscReal sliding_work(const ContactPoint *c, const PetscReal s[3])
   const PetscReal most = contact_most(&c->law, c->now.pressure), size = PetscSqrtReal(square);
   const PetscReal part = size > most ? most / size : 1;
   for (int d = 0; d < 3; ++d) work -= 0.5 * (c->now.shear[d] + part * next[d]) * s[d];
-  return c->law.kind == CONTACT_BONDED ? 0 : work;
+  return c->law.kind == CONTACT_FRICTION ? work : 0;
 }
 
 /* What its law starts from in the next substep; after the last one of the run's step, the force itself. move: of
@@ -211,8 +219,9 @@ PetscErrorCode WallsAccount(Model *m, Explicit *e)
   e->friction = 0;
   if (!s) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(s->n_partners, &area, s->n_partners, &deepest));
+  PetscCall(ContactCover(s, m->grid));
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (c->state != CONTACT_OPEN) area[c->wall] += c->section;
+    if (c->covered) area[c->wall] += c->section;
     if (c->state != CONTACT_OPEN) deepest[c->wall] = PetscMax(deepest[c->wall], -c->gap);
   }
   for (PetscInt k = 0; k < s->n_partners; ++k) e->friction += e->rubbed[k];

@@ -126,6 +126,17 @@ static PetscErrorCode Refit(Column *column, PetscInt64 rows, PetscInt n, PetscIn
   PetscFunctionReturn(0);
 }
 
+/* Springs of another stiffness go on with the force that they had: surfaces are where another scheme would find them. */
+static void let_go_of_springs(const Case *c, const Case *from, const Column *contact, PetscInt64 rows, PetscInt dim)
+{
+  const PetscInt sides = contact_sides(c), side = contact_kept_side(dim, sides);
+  const PetscInt64 n = rows * (c->n_walls + c->n_interfaces) * sides;
+  PetscReal *kept = contact->data;
+  if (c->analysis.type != ANALYSIS_EXPLICIT || c->analysis.contact == from->analysis.contact) return;
+  for (PetscInt64 k = 0; k < n; ++k)
+    if (contact_is_sprung(kept[k * side + KEPT_STATE])) kept[k * side + KEPT_STATE] -= CONTACT_SPRING;
+}
+
 static PetscErrorCode RenamePartners(const Case *c, const Case *from, PetscInt dim, const Tables *tables)
 {
   const PetscInt n = c->n_walls + c->n_interfaces, before = from->n_walls + from->n_interfaces;
@@ -147,6 +158,7 @@ static PetscErrorCode RenamePartners(const Case *c, const Case *from, PetscInt d
     if (strcmp(column->name, "contact") != 0 || column->components != before * width) continue;
     PetscCall(Pick(column, points->rows, (size_t)width * sizeof(PetscReal), before, n, was));
     PetscCall(Refit(column, points->rows, n, dim, sides_before, contact_sides(c)));
+    let_go_of_springs(c, from, column, points->rows, dim);
   }
   PetscCall(PetscFree2(was, rigid));
   PetscFunctionReturn(0);

@@ -11,11 +11,13 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
   EnergyStep energy;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscMemzero(report, sizeof *report));
+  PetscCall(WallsAppear(m, report));
+  if (report->outcome != STEP_ACCEPTED) PetscFunctionReturn(0);
   if (m->scheme == &time_scheme_explicit) {
     PetscCall(ExplicitStep(m, limit, report));
     PetscFunctionReturn(0);
   }
-  PetscCall(PetscMemzero(report, sizeof *report));
   PetscCall(ModelInitialise(m)); /* (a) nodes learn from where points are */
   /*     which of them have unknowns, and which are held */
   PetscCall(NonlocalStep(m));              /*     and points of what is around them */

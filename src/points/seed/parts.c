@@ -418,6 +418,7 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
       part[q].spread[d] = PetscMax(0, sum->second[d] / sum->volume - PetscSqr(part[q].xi[d]));
     }
   }
+  seed_hand_on_faces(part, rule, dim);
   seed_join_slivers(part, rule->n, dim);
   return inside <= 0 ? SEED_NONE : inside >= 1 - SEED_NOTHING ? SEED_WHOLE : SEED_CUT;
 }

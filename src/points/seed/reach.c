@@ -90,6 +90,50 @@ void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, c
     for (PetscInt d = 0; d < cell->dim && (square_on || k == nearest); ++d) corner[d] += away[k] * normal[k][d];
 }
 
+/* Half of the sides of a cell along the axes; PETSC_FALSE: it is no rectangle or brick along them. */
+static PetscBool half_sides(CellType type, const PetscReal *x, PetscReal *half)
+{
+  const Cell *cell = cells + type;
+  if (cell->nodes != 1 << cell->dim) return PETSC_FALSE;
+  for (PetscInt d = 0; d < cell->dim; ++d) {
+    PetscReal low = x[d], high = x[d];
+    for (PetscInt i = 1; i < cell->nodes; ++i)
+      low = PetscMin(low, x[i * cell->dim + d]), high = PetscMax(high, x[i * cell->dim + d]);
+    half[d] = 0.5 * (high - low);
+    for (PetscInt i = 0; i < cell->nodes; ++i)
+      if (PetscAbsReal(0.5 * (low + high) + half[d] * cell->reference[i][d] - x[i * cell->dim + d]) > ALONG * half[d])
+        return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* Does the body end so far from a place along axis d? */
+static PetscBool ends_at(const Seeding *s, const PetscReal *position, PetscInt d, PetscReal away)
+{
+  const PetscInt dim = s->source->dim;
+  PetscReal within[3] = {0}, beyond[3] = {0};
+  for (PetscInt i = 0; i < dim; ++i) within[i] = beyond[i] = position[i];
+  within[d] += (1 - WITHIN) * away;
+  beyond[d] += (1 + WITHIN) * away;
+  return (PetscBool)(shape_contains(&s->body->shape, dim, within, 0) &&
+                     !shape_contains(&s->body->shape, dim, beyond, 0));
+}
+
+void seed_corner_of_part(const Seeding *s, CellType type, const PetscReal *x, const SeedPart *part,
+                         const PetscReal *position, PetscReal reach, PetscReal *corner)
+{
+  const PetscInt dim = s->source->dim;
+  PetscReal half[3], square = 0;
+  if (!half_sides(type, x, half)) return;
+  for (PetscInt d = 0; d < dim; ++d) {
+    const PetscReal away = half[d] * PetscSqrtReal(3 * part->spread[d]); /* of what fills its part evenly */
+    const PetscBool low = ends_at(s, position, d, -away), high = ends_at(s, position, d, away);
+    corner[d] = low == high ? 0 : high ? away : -away;
+    square += PetscSqr(corner[d]);
+  }
+  for (PetscInt d = 0; d < dim && square <= PetscSqr((1 + WITHIN) * reach); ++d) corner[d] = 0;
+}
+
 /* Does the body reach side `side` beside a place xi of the cell? */
 static PetscBool reaches(const Seeding *s, CellType type, const PetscReal *x, PetscInt side, const PetscReal *xi)
 {

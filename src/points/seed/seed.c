@@ -285,6 +285,9 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt k, co
     seed_domain(grid_cell_type(s->source, cell), x, xi, rule->side, part && !part->whole ? part->spread : NULL, section,
                 point_real(points, POINT_DOMAIN, p));
   if (s->outer) *point_real(points, POINT_REACH, p) = reach_of(s, k, x, q, position, section, whole);
+  if (points->components[POINT_CORNER] && part && s->outer)
+    seed_corner_of_part(s, grid_cell_type(s->source, cell), x, part, position, *point_real(points, POINT_REACH, p),
+                        point_real(points, POINT_CORNER, p));
   if (points->components[POINT_CORNER] && !part)
     seed_corner(grid_cell_type(s->source, cell), x, position, rule, q, s->outer + k * CELL_MOST_SIDES,
                 point_real(points, POINT_CORNER, p));

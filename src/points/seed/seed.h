@@ -57,6 +57,9 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
 /* slivers.c. Points that are next to nothing go to those beside them, or, where a cell has no others, are one: whatever
  * comes first, so that a body and its image in a mirror have the same points. */
 void seed_join_slivers(SeedPart *part, PetscInt n, PetscInt dim);
+/* A surface along the line between two parts is found in the one beyond it, which has nothing of the body: it is that of
+ * the nearest one that has. */
+void seed_hand_on_faces(SeedPart *part, const SeedRule *rule, PetscInt dim);
 
 /* Half lengths l of the domain of a point at xi, in a cell with nodes at x whose lattice has `side`
  * points a direction; 0: it stands for this part of the section, or of the volume in space. */
@@ -71,6 +74,10 @@ void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscIn
 PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section,
                      const SeedRule *rule, PetscInt q, const unsigned char *outer);
 
+/* Of a part of a rectangle or brick that the surface cuts: to the sides of the body that are its ends along the axes,
+ * or to the corner or edge between them; 0 where none is farther than the nearest surface. */
+void seed_corner_of_part(const Seeding *s, CellType type, const PetscReal *x, const SeedPart *part,
+                         const PetscReal *position, PetscReal reach, PetscReal *corner);
 /* From the same point to these sides, or to the corner or edge where several of them meet at right angles; of others to
  * the nearest; 0 inside. */
 void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, const SeedRule *rule, PetscInt q,

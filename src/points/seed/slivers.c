@@ -55,3 +55,25 @@ void seed_join_slivers(SeedPart *part, PetscInt n, PetscInt dim)
     else first = q;
   }
 }
+
+/* Of the nodes of the rule, as parts without anything have no place of their own. */
+static PetscReal square_of_rule(const SeedRule *rule, PetscInt dim, PetscInt p, PetscInt q)
+{
+  PetscReal square = 0;
+  for (PetscInt d = 0; d < dim; ++d) square += PetscSqr(rule->xi[p * dim + d] - rule->xi[q * dim + d]);
+  return square;
+}
+
+void seed_hand_on_faces(SeedPart *part, const SeedRule *rule, PetscInt dim)
+{
+  for (PetscInt q = 0; q < rule->n; ++q) {
+    PetscInt to = -1;
+    if (part[q].share > 0) continue;
+    for (PetscInt p = 0; p < rule->n; ++p)
+      if (part[p].share > 0 &&
+          (to < 0 || square_of_rule(rule, dim, p, q) < square_of_rule(rule, dim, to, q) - SEED_NOTHING))
+        to = p;
+    for (PetscInt d = 0; d < dim && to >= 0; ++d) part[to].face[d] += part[q].face[d];
+    for (PetscInt d = 0; d < dim; ++d) part[q].face[d] = 0;
+  }
+}

@@ -1,4 +1,4 @@
-/* What has sunk into walls and other bodies: contact of explicit dynamics is a spring as stiff as a cell. */
+/* What has sunk into walls and other bodies: contact of explicit dynamics is a spring about as stiff as a cell. */
 #include "run/report/sunk.h"
 
 #define SUNK_ALLOWED 0.01 /* of a cell, where the run ends: by so much of a cell too much does the body give way */
@@ -6,15 +6,21 @@
 static void warn_of_partner(const Case *c, PetscInt k, PetscReal deep, Diag *diag)
 {
   const PetscBool wall = k < c->n_walls;
+  AnalysisSpec stiffer = c->analysis;
   char path[32];
+  stiffer.contact = PetscMin(100, PetscCeilReal(c->analysis.contact * deep / SUNK_ALLOWED));
   snprintf(path, sizeof path, wall ? "walls[%d]" : "interfaces[%d]", (int)(wall ? k : k - c->n_walls));
-  diag_warning(diag, path,
-               "at the end material is %.2g of a cell deep in %s '%s': contact of explicit dynamics is as soft as a "
-               "cell, and what is pressed there gives way by so much more",
-               (double)deep, wall ? "wall" : "interface", wall ? c->walls[k].name : c->interfaces[k - c->n_walls].name);
-  diag_hint(diag,
-            "smaller cells lessen it as they are smaller, shorter steps do not; implicit dynamics has none of it "
-            "(docs/theory.md, section 34)");
+  diag_warning(
+    diag, path,
+    "at the end material is %.2g of a cell deep in %s '%s': contact of explicit dynamics is about as soft as "
+    "a cell, and what is pressed there gives way by so much more",
+    (double)deep, wall ? "wall" : "interface", wall ? c->walls[k].name : c->interfaces[k - c->n_walls].name);
+  diag_hint(
+    diag,
+    "`analysis: {contact_stiffness: %g}` leaves about %.2g of a cell of it, in %.1f times as many substeps; smaller "
+    "cells lessen it, too, and implicit dynamics has none of it (docs/theory.md, section 34)",
+    (double)stiffer.contact, (double)(deep * c->analysis.contact / stiffer.contact),
+    (double)(case_courant(&c->analysis) / case_courant(&stiffer)));
 }
 
 void warn_of_sunk(const Model *m, Diag *diag)

@@ -20,6 +20,7 @@ static void warn_of_wall(const Model *m, const RigidWall *b, Diag *diag)
   char path[32];
   for (int d = 0; d < 3; ++d) centre[d] = b->body.centre[d] + b->now.moved[d];
   for (PetscInt d = 0; d < m->dim; ++d) out |= centre[d] < grid->min[d] || centre[d] > grid->max[d];
+  out = (PetscBool)(out && m->contact->wall[b->wall].area == 0); /* what reaches in and is touched may stand there */
   const PetscInt other = wall_around(m, b->wall, centre);
   snprintf(path, sizeof path, "walls[%d]", (int)b->wall);
   if (other >= 0)

@@ -57,14 +57,26 @@ void contact_again(Contact *s)
   }
 }
 
+static PetscBool has_adhesion(const Case *c)
+{
+  for (PetscInt k = 0; k < c->n_walls; ++k)
+    if (c->walls[k].adhesion > 0) return PETSC_TRUE;
+  for (PetscInt k = 0; k < c->n_interfaces; ++k)
+    if (c->interfaces[k].adhesion > 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 static PetscErrorCode Begin(void *data, const NodalScene *scene)
 {
   Contact *s = data;
+  PetscReal changed;
 
   PetscFunctionBeginUser;
   for (RigidWall *b = s->rigid; b < s->rigid + s->n_rigid; ++b) b->start = b->now;
   contact_again(s);
   PetscCall(ContactFind(s, scene));
+  s->adheres = (PetscBool)(scene->c->analysis.type != ANALYSIS_EXPLICIT && has_adhesion(scene->c));
+  if (s->adheres) PetscCall(ContactLend(s, scene->grid, PETSC_TRUE, &changed));
   PetscFunctionReturn(0);
 }
 

@@ -35,9 +35,10 @@ typedef struct {
   PetscReal cover;     /* the share of it that the other body stands before; 1: a wall */
   /* of its material, and of that of the other body (0: a wall), Pa, kg/m3 */
   PetscReal modulus[2], density[2];
-  PetscReal stiffer; /* by so much does it oppose a change of volume more than `modulus` says */
-  PetscReal open;    /* gap at the start of the step, m */
-  PetscReal bond;    /* that the wall bears along itself without pressure, N */
+  PetscReal stiffer;  /* by so much does it oppose a change of volume more than `modulus` says */
+  PetscReal open;     /* gap at the start of the step, m */
+  PetscReal own_bond; /* that the wall bears along itself without pressure, N, */
+  PetscReal bond;     /* with what others lend it: ContactLend */
   ContactLaw law;
   PetscReal stiffest; /* penalty, N/m */
   PetscReal borne;    /* explicit dynamics: the share of its spring that the substep bears */
@@ -47,6 +48,7 @@ typedef struct {
   ContactState before; /* at the end of the last step */
   PetscBool gone;      /* has the wall vanished when the step begins? Its last force is to be forgotten */
   PetscBool touches;   /* is there no gap at the start of the step? */
+  PetscBool covered;   /* does its surface touch after the step? See ContactCover */
   PetscReal gap;       /* at the last assembly, m */
   PetscReal normal[3]; /* at the last assembly */
   PetscReal facing[3]; /* at the start of the step, as the owner sees it */
@@ -104,8 +106,9 @@ typedef struct Contact {
   PetscReal near;   /* m: what is farther away cannot be reached in a step */
   PetscReal length; /* of a cell, m: scale of gaps */
   ContactShare share;
-  PetscBool grips; /* for a first guess: what was in contact goes along with its wall */
-  PetscBool over;  /* is the run over? What bears nothing holds nothing then */
+  PetscBool adheres; /* does anything, in implicit steps and statics? */
+  PetscBool grips;   /* for a first guess: what was in contact goes along with its wall */
+  PetscBool over;    /* is the run over? What bears nothing holds nothing then */
   /* n_partners x n_bodies: of friction and adhesion where that body meets this partner; 0: it does not slide */
   PetscReal *divisor;
   WallState *wall;
@@ -176,6 +179,14 @@ PetscReal contact_face(const Points *points, PetscInt p, const PetscReal n[3]);
 PetscBool contact_is_strained(const Points *points, PetscInt p, PetscReal limit);
 /* Position of a contact point with the field's increments, times `whole`. */
 void contact_place(const Contact *contact, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3]);
+
+/* Does wall k meet this body? */
+PetscBool contact_meets_body(const Case *c, PetscInt k, PetscInt body);
+/* Collective. Which contact points touch after the step (ContactPoint.covered), with or without a force. */
+PetscErrorCode ContactCover(Contact *contact, const Grid *grid);
+/* Collective. What these may bear by adhesion, those bear that have the force beside them: at the start of the step, or
+ * at the last assembly. changed: by how much bonds are others now, over the largest. */
+PetscErrorCode ContactLend(Contact *contact, const Grid *grid, PetscBool starts, PetscReal *changed);
 
 /* What a wall does to the surface of the material at one place. */
 typedef struct {

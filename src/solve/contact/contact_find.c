@@ -132,7 +132,7 @@ void contact_take_section(const Contact *s, const NodalScene *scene, PetscReal s
   const PetscReal adhesion =
     wall ? scene->c->walls[c->wall].adhesion : scene->c->interfaces[c->wall - s->n_walls].adhesion;
   c->section = c->cover * section;
-  c->bond = divisor > 0 ? adhesion / divisor * c->section : 0;
+  c->bond = c->own_bond = divisor > 0 ? adhesion / divisor * c->section : 0;
 }
 
 /* A bonded interface holds what touches at the start, and nothing that comes later. */
@@ -184,7 +184,7 @@ void contact_start(const NodalScene *scene, ContactPoint *c)
   c->stays = 1;
 }
 
-static PetscBool meets_body(const Case *c, PetscInt k, PetscInt body)
+PetscBool contact_meets_body(const Case *c, PetscInt k, PetscInt body)
 {
   const WallSpec *w = c->walls + k;
   for (PetscInt i = 0; i < w->n_bodies; ++i)
@@ -280,7 +280,7 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
   PetscInt slot[WALL_SIDES];
 
   PetscFunctionBeginUser;
-  if (!meets_body(scene->c, k, points->body[p])) PetscFunctionReturn(0);
+  if (!contact_meets_body(scene->c, k, points->body[p])) PetscFunctionReturn(0);
   const int side = wall_side(s->walls, k, scene->t, x);
   const PetscInt n = wall_sides(s->walls, k, scene->t, x, s->near + contact_farthest(points, p), side, place);
   contact_find_slots(s, points, p, k, n, place, slot, kept);

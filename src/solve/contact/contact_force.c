@@ -3,11 +3,18 @@
 
 #define ROUND_CORNER 0.9 /* cosine: a normal that has turned by more in a step belongs to another face */
 
+static void take_way(const Contact *s, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal way[3])
+{
+  for (int d = 0; d < 3; ++d) way[d] = 0;
+  for (PetscInt I = 0; I < c->n; ++I)
+    for (PetscInt d = 0; d < s->dim; ++d) way[d] += whole * s->N[c->first + I] * du[s->node[c->first + I] * s->dim + d];
+}
+
 void contact_place(const Contact *s, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3])
 {
-  for (int d = 0; d < 3; ++d) x[d] = c->x[d];
-  for (PetscInt I = 0; I < c->n; ++I)
-    for (PetscInt d = 0; d < s->dim; ++d) x[d] += whole * s->N[c->first + I] * du[s->node[c->first + I] * s->dim + d];
+  PetscReal way[3];
+  take_way(s, c, du, whole, way);
+  for (int d = 0; d < 3; ++d) x[d] = c->x[d] + way[d];
 }
 
 /* A place in the wall, beside a corner, may be nearer to another face than that which the material came to: it would be
@@ -30,14 +37,21 @@ static PetscBool see_wall(const Contact *s, ContactPoint *c, PetscReal t, const 
   return PETSC_TRUE;
 }
 
-/* The wall as the contact point sees it at x, or the other body: a plane that goes with it. */
-static PetscBool place_of(const Contact *s, ContactPoint *c, PetscReal t, const PetscReal x[3], WallPlace *place)
+/* The wall as the contact point sees it at x, on its way there, or the other body: a plane that goes with it. Far from
+ * the origin (maps have 5e6 m) x is rounded to 1e-9 m, for which a stiff body has more force than Newton's method may
+ * leave: what rounding has lost of the way counts in the gap. */
+static PetscBool place_of(const Contact *s, ContactPoint *c, PetscReal t, const PetscReal x[3], const PetscReal way[3],
+                          WallPlace *place)
 {
-  if (c->wall < s->n_walls) return see_wall(s, c, t, x, place);
+  if (c->wall < s->n_walls) {
+    if (!see_wall(s, c, t, x, place)) return PETSC_FALSE;
+    for (int d = 0; d < 3; ++d) place->gap += (way[d] - (x[d] - c->x[d])) * place->normal[d];
+    return PETSC_TRUE;
+  }
   *place = (WallPlace){.gap = c->open};
   for (int d = 0; d < 3; ++d) {
     place->normal[d] = c->normal[d];
-    place->gap += (x[d] - c->x[d]) * c->normal[d];
+    place->gap += way[d] * c->normal[d];
   }
   return PETSC_TRUE;
 }
@@ -52,15 +66,16 @@ static void stay_open(ContactPoint *c)
 PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *scene, PetscReal *K)
 {
   const RigidWall *rigid = contact_rigid(s, c);
-  PetscReal x[3];
+  PetscReal way[3], x[3];
   WallPlace place;
-  contact_place(s, c, scene->du, scene->whole, x);
+  take_way(s, c, scene->du, scene->whole, way);
+  for (int d = 0; d < 3; ++d) x[d] = c->x[d] + way[d];
   if (rigid) rigid_sweep(rigid, c->x, x, c->swept);
   for (int d = 0; d < 3 && rigid; ++d) c->passes[d] = c->swept[d];
   stay_open(c);
   c->ahead = c->reach;
-  if (!place_of(s, c, scene->end, x, &place)) return PETSC_FALSE;
-  for (int d = 0; d < 3; ++d) c->slip[d] = x[d] - c->x[d] - c->swept[d], c->normal[d] = place.normal[d];
+  if (!place_of(s, c, scene->end, x, way, &place)) return PETSC_FALSE;
+  for (int d = 0; d < 3; ++d) c->slip[d] = way[d] - c->swept[d], c->normal[d] = place.normal[d];
   c->gap = place.gap;
   c->law.grips = s->grips && c->before != CONTACT_OPEN;
   c->state = contact_law(&c->law, &place, c->slip, &c->multiplier, &c->now, K);

@@ -21,6 +21,7 @@
 #define FLOWING 5e-4
 #define SLIPS \
   0.2 /* slips of friction that stay there, over such gaps: more let a column go 1 % too far along its floor */
+#define LENT 1e-3  /* of the largest bond: who has lent so much more bears something else */
 #define RESTS 1e-3 /* of a cell: what moves by no more along its wall in a step may be at rest */
 #define MOST_CHANGES 40
 /* Where more points touch than nodes can follow, gaps of some stay, and their multipliers would grow
@@ -205,6 +206,16 @@ static void stiffen(ContactPoint *c, PetscReal left)
   c->law.along *= c->law.penalty / before;
 }
 
+/* Of a motion, what a gap may be compared with: in statics none along the wall, which a body may be dragged by while it
+ * is pressed by next to nothing. */
+static PetscReal counts_of(const Contact *s, const ContactPoint *c, const PetscReal motion[3])
+{
+  PetscReal square = 0, along = 0;
+  for (int d = 0; d < 3; ++d) square += motion[d] * motion[d], along += motion[d] * c->normal[d];
+  const PetscBool slips = c->law.kind == CONTACT_FRICTIONLESS || c->law.kind == CONTACT_FRICTION;
+  return slips && !s->share.moves ? PetscAbsReal(along) : PetscSqrtReal(square);
+}
+
 /* How far its body, or its wall, takes a contact point in the step, m. In dynamics what rests with a gap would be
  * shaken, and what flies has its force of its inertia: there walls count that are moved, and what is bonded, if the
  * scheme is the midpoint rule's. Newmark's remembers what small gaps take, and shook a block that rests on a bonded
@@ -212,14 +223,13 @@ static void stiffen(ContactPoint *c, PetscReal left)
 static PetscReal travel_of(const Contact *s, const ContactPoint *c, const NodalScene *scene)
 {
   const PetscBool driven = c->wall < s->n_walls && !contact_rigid(s, c);
-  PetscReal own[3] = {0}, square[2] = {0};
+  PetscReal own[3] = {0};
   if (c->state == CONTACT_OPEN) return 0;
   if (s->share.moves && (c->law.kind != CONTACT_BONDED || s->share.inertia))
-    return driven ? PetscSqrtReal(PetscSqr(c->swept[0]) + PetscSqr(c->swept[1]) + PetscSqr(c->swept[2])) : 0;
+    return driven ? counts_of(s, c, c->swept) : 0;
   for (PetscInt e = c->first; e < c->first + c->own; ++e)
     for (PetscInt d = 0; d < s->dim; ++d) own[d] += scene->whole * s->N[e] * scene->du[s->node[e] * s->dim + d];
-  for (int d = 0; d < 3; ++d) square[0] += own[d] * own[d], square[1] += c->swept[d] * c->swept[d];
-  return PetscSqrtReal(PetscMax(square[0], square[1]));
+  return PetscMax(counts_of(s, c, own), counts_of(s, c, c->swept));
 }
 
 /* What may stay of gaps, or of slips, which `times` as much may; moved: against the wall, and at all. */
@@ -235,6 +245,18 @@ static PetscReal allowed(const Contact *s, PetscInt change, PetscReal moved, Pet
 static PetscReal stalled_of(const ContactPoint *c, PetscInt change, PetscReal left)
 {
   return c->law.kind == CONTACT_BONDED && change >= PATIENCE ? left / BONDED_ALLOWED : left;
+}
+
+/* Who bears has changed, and with it who adheres. */
+static PetscErrorCode LendAgain(Contact *s, const Grid *grid, PetscBool *again)
+{
+  PetscReal changed;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactLend(s, grid, PETSC_FALSE, &changed));
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) c->law.bond = c->bond / s->share.mean;
+  if (changed > LENT) *again = PETSC_TRUE;
+  PetscFunctionReturn(0);
 }
 
 /* Multipliers become the forces that there are, and the balance is sought again, unless gaps and
@@ -265,6 +287,7 @@ PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt chan
                          of_all[4] <= allowed(s, change, of_all[2], of_all[5], SLIPS);
   *again = !stay && change < MOST_CHANGES && !stalls;
   s->worst = all;
+  if (s->adheres && change < TRIES) PetscCall(LendAgain(s, scene->grid, again));
   if (!*again) PetscFunctionReturn(0);
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     const PetscReal left = left_of(c);

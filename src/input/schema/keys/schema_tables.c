@@ -127,6 +127,10 @@ static const SchemaEntry analysis_entries[] = {
     AT(AnalysisSpec, courant)),
   KEY("update", WORD, NULL, "explicit: what strains the points", .words = update_words, .fallback = "musl",
       AT(AnalysisSpec, update)),
+  KEY("contact_stiffness", NUMBER, NULL,
+      "explicit: springs of walls and interfaces, over the stiffness of a cell; what is pressed gives way by so much "
+      "less of a cell, and beyond 1.7 substeps are so much shorter: 1.3, 1.6, 2, 2.7 times with 3.6, 5.6, 9.2, 17",
+      .fallback = "1", .bounded = PETSC_TRUE, .min = 1, .max = 1000, AT(AnalysisSpec, contact)),
   KEY("scheme", TEXT, NULL, "time scheme of dynamics",
       .note = "newmark; with bossak: bossak; with basis gimp and transfer consistent: midpoint",
       AT(AnalysisSpec, scheme)),
@@ -136,8 +140,8 @@ static const SchemaEntry analysis_entries[] = {
       AT(AnalysisSpec, gamma)),
   KEY("bossak", NUMBER, NULL, "Bossak's alpha: damps high frequencies", .fallback = "0", BETWEEN(-1. / 3., 0),
       AT(AnalysisSpec, bossak)),
-  KEY("damping", NUMBER, "1/s", "Rayleigh damping proportional to mass", .fallback = "0", AT_LEAST(0),
-      AT(AnalysisSpec, damping)),
+  KEY("damping", NUMBER, "1/s", "Rayleigh damping proportional to the mass of bodies; walls with mass have none",
+      .fallback = "0", AT_LEAST(0), AT(AnalysisSpec, damping)),
   KEY("mass", WORD, NULL, "mass matrix", .words = mass_words, .fallback = "consistent", AT(AnalysisSpec, mass)),
   KEY("transfer", WORD_TEXT, NULL, "mpm: what nodes take of the points' motion, see `talus list transfers`",
       .registry = (const void *const *)transfers,
@@ -159,7 +163,8 @@ static PetscBool hide_in_analysis(const SchemaEntry *e, const void *source)
   const AnalysisType type = ((const AnalysisSpec *)source)->type;
   if (!strcmp(e->key, "unheld")) return type != ANALYSIS_STATIC;
   if (!strcmp(e->key, "limit")) return type != ANALYSIS_LIMIT;
-  if (!strcmp(e->key, "courant") || !strcmp(e->key, "update")) return type != ANALYSIS_EXPLICIT;
+  if (!strcmp(e->key, "courant") || !strcmp(e->key, "update") || !strcmp(e->key, "contact_stiffness"))
+    return type != ANALYSIS_EXPLICIT;
   return !strcmp(e->key, "reduction") && type != ANALYSIS_FACTOR;
 }
 

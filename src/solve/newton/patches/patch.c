@@ -95,22 +95,32 @@ static PetscErrorCode EvaluateAt(void *context, PetscReal lambda, PetscReal *nor
   PetscFunctionReturn(0);
 }
 
-/* Blocks -> matrix, with nothing but a diagonal where something is prescribed. */
+/* The blocks of one node -> its rows of the matrix. */
+static void fill_rows(Work *w, PetscInt node)
+{
+  const PetscInt dim = w->dim, band = band_of(w), first = PetscMax(0, node - w->reach);
+  const PetscInt end = PetscMin(w->patch->n, node + w->reach + 1);
+  const PetscReal *block = w->blocks + (node * width_of(w) + first - node + w->reach) * dim * dim;
+  for (PetscInt other = first; other < end; ++other)
+    for (PetscInt a = 0; a < dim; ++a)
+      for (PetscInt b = 0; b < dim; ++b) w->matrix[lu_at(band, node * dim + a, other * dim + b)] = *block++;
+}
+
+/* Nothing but a diagonal where unknown i is prescribed. */
+static void cut(Work *w, PetscInt i)
+{
+  const PetscInt band = band_of(w), end = PetscMin(w->m, i + band + 1);
+  for (PetscInt j = PetscMax(0, i - band); j < end; ++j)
+    w->matrix[lu_at(band, i, j)] = w->matrix[lu_at(band, j, i)] = i == j;
+}
+
 static PetscErrorCode FillMatrix(Work *w)
 {
-  const PetscInt dim = w->dim, n = w->patch->n, band = band_of(w);
-  const unsigned char *fixed = w->p->fixed;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(w->matrix, w->m * lu_width(band)));
-  for (PetscInt i = 0; i < w->m; ++i) {
-    const PetscInt node = i / dim, end = PetscMin(n, node + w->reach + 1);
-    for (PetscInt j = PetscMax(0, node - w->reach) * dim; j < end * dim; ++j) {
-      const PetscInt block = node * width_of(w) + j / dim - node + w->reach;
-      const PetscBool cut = fixed[place_of(w, i)] || fixed[place_of(w, j)];
-      w->matrix[lu_at(band, i, j)] = cut ? (PetscReal)(i == j) : w->blocks[(block * dim + i % dim) * dim + j % dim];
-    }
-  }
+  PetscCall(PetscArrayzero(w->matrix, w->m * lu_width(band_of(w))));
+  for (PetscInt node = 0; node < w->patch->n; ++node) fill_rows(w, node);
+  for (PetscInt i = 0; i < w->m; ++i)
+    if (w->p->fixed[place_of(w, i)]) cut(w, i);
   PetscFunctionReturn(0);
 }
 
@@ -134,9 +144,12 @@ static PetscErrorCode Iterate(Work *w, PetscReal enough, PetscReal *best)
   get_increments(w, w->from);
   get_increments(w, best);
   PetscCall(PetscArrayzero(w->y, w->m));
+  w->tangent = w->p->stiff; /* most other patches need none */
   PetscCall(LineTry(&line, 0));
-  w->tangent = PETSC_TRUE; /* most patches need none */
-  if (line.norm > enough) PetscCall(LineTry(&line, 0));
+  if (!w->tangent && line.norm > enough) {
+    w->tangent = PETSC_TRUE;
+    PetscCall(LineTry(&line, 0));
+  }
   least = line.norm;
   for (PetscInt it = 0; it < MOST_ITERATIONS && line.norm > enough && line.norm < PETSC_INFINITY; ++it) {
     PetscCall(FillMatrix(w));

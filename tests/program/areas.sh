@@ -1,0 +1,141 @@
+#!/bin/sh
+# Surfaces in contact, against geometry: whatever lies where on the grid, however many points share the nodes of an edge, and
+# with what bears by its surface alone, adhesion.
+. "$(dirname "$0")/library.sh"
+
+# last COLUMN: of the last row.
+last() { tail -n 1 run/history.csv | cut -d, -f"$1"; }
+# near NAME VALUE EXPECTED SHARE
+near() {
+  awk -v v="$2" -v e="$3" -v s="$4" 'BEGIN { d = v / e - 1; exit !(d < s && d > -s) }' || fail "$name: $1 is $2, not $3"
+}
+
+# --- a cube on a floor that lies anywhere in a layer of cells ---
+cat >cube.yaml <<'END'
+kinematics: 3d
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [-0.5, -0.5, LOW], max: [1.5, 1.5, HIGH]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, points_per_cell: 8, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
+loads: {gravity: [0, 0, -10]}
+walls: [{name: low, shape: {half-space: {point: [0, 0, 0], normal: [0, 0, 1]}}, friction: 0.3}]
+measures: {force: {wall_force: z, of: {wall: low}}, area: {contact: area, of: {wall: low}}, mean: {contact: pressure, of: {wall: low}}, peak: {contact: peak_pressure, of: {wall: low}}}
+END
+for low in -0.375 -0.4 -0.5; do
+  sed "s/LOW/$low/; s/HIGH/$(awk -v l=$low 'BEGIN { print l + 2 }')/" cube.yaml >case.yaml
+  expect "a cube, $low" 0 "$talus" run case.yaml --out run --force --quiet
+  near force "$(last 3)" 10000 1e-6
+  near area "$(last 4)" 1 5e-4
+  near mean "$(last 5)" 10000 5e-4
+  near peak "$(last 6)" 11200 0.02 # its foot is held by friction
+done
+
+# --- adhesion of a side that is pressed by its neighbour alone and dragged along ---
+cat >side.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 2}
+grid: {box: {min: [-1.1, -1], max: [1.9, 2]}, size: 0.2}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: m}]
+materials: {m: {law: neo-hookean, density: 2000, young: 1e6, poisson: 0.3}}
+walls:
+  - {name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}}
+  - {name: left, shape: {half-space: {point: [0, 0], normal: [1, 0]}}}
+  - {name: right, shape: {half-space: {point: [1, 0], normal: [-1, 0]}}, adhesion: 100, motion: [{displacement: {y: -0.1}}]}
+  - {name: punch, shape: {half-space: {point: [0, 1], normal: [0, -1]}}, motion: [{displacement: {y: -0.001}}]}
+measures: {along: {wall_force: y, of: {wall: right}}, across: {wall_force: x, of: {wall: right}}, area: {contact: area, of: {wall: right}}}
+END
+# What is dragged along by 0.1 m and pressed by 1 mm: lambda times the strain, which a gap of 1e-5 of a cell had 1 % of.
+for set in grid.cell=quadrilateral 'grid.box={min: [-1.05, -1.13], max: [1.95, 1.87]}' 'basis={cell: {}}' method=fem; do
+  sed 's/min: \[-1.1, -1\], max: \[1.9, 2\]/min: [0, 0], max: [1, 1]/' side.yaml >own.yaml
+  case=side.yaml
+  [ "$set" != method=fem ] || case=own.yaml
+  expect "a side, $set" 0 "$talus" run $case --set "$set" --out run --force --quiet
+  near along "$(last 3)" -99.95 1e-3
+  near across "$(last 4)" -576.6 2e-3
+  near area "$(last 5)" 0.999 1e-3
+done
+
+# --- a body that ends anywhere in a cell, on another one ---
+cat >rings.yaml <<'END'
+kinematics: axisymmetric
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [0.8, 1.2]}, size: 0.1}
+bodies:
+  - {name: low, shape: {box: {min: [0, 0], max: [0.7, 0.5]}}, material: m}
+  - {name: up, shape: {box: {min: [0, 0.5], max: [RADIUS, 1]}}, material: m}
+materials: {m: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0}}
+boundary: [{name: floor, on: {boundary: bottom}, fix: [x, y]}, {name: ax, on: {boundary: left}, fix: [x]}]
+interfaces: [{name: i, between: [up, low], friction: 0.3}]
+loads: {tractions: [{on: {body: up, y: 1}, value: [0, -1e4]}]}
+measures: {force: {interface_force: y, of: {interface: i}}, area: {interface: area, of: {interface: i}}}
+END
+for radius in 0.4 0.43 0.45 0.47; do
+  sed "s/RADIUS/$radius/" rings.yaml >case.yaml
+  expect "rings to $radius" 0 "$talus" run case.yaml --out run --force --quiet
+  near area "$(last 4)" "$(awk -v r=$radius 'BEGIN { print 3.14159265 * r * r }')" 5e-4
+done
+
+# --- adhesion of a body that is pushed over another one: of the whole joint in every step, whichever of its points bear ---
+cat >joint.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, end: 2, steps: 20}
+grid: {box: {min: [0, 0], max: [2, 1]}, size: 0.125}
+bodies:
+  - {name: low, shape: {box: {min: [0, 0], max: [2, 0.5]}}, material: m, points_per_cell: 4}
+  - {name: up, shape: {box: {min: [0.5, 0.5], max: [1.5, 1]}}, material: m, points_per_cell: 4}
+materials: {m: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0}}
+boundary: [{name: floor, on: {boundary: bottom}, fix: [x, y]}]
+walls: [{name: push, shape: {box: {min: [0.25, 0.505], max: [0.5, 0.7]}}, bodies: [up], motion: [{displacement: {x: 0.1}, amplitude: [[0, 0], [1, 0], [2, 1]]}]}]
+interfaces: [{name: i, between: [up, low], contact: friction, adhesion: 2e4}]
+loads: {tractions: [{on: {body: up, y: 1}, value: [0, -1e5], amplitude: [[0, 0], [1, 1]]}]}
+measures: {along: {interface_force: x, of: {interface: i}}, area: {interface: area, of: {interface: i}}}
+END
+for ranks in 1 2; do
+  expect "a joint on $ranks" 0 on_ranks $ranks "$talus" run joint.yaml --set linear=direct --out run --force --quiet
+  awk -F, 'NR > 1 && $1 > 1.2 && ($3 > -19800 || $3 < -20200 || $4 < 0.999 || $4 > 1.001) { bad = 1; print } NR > 1 && $1 > 1.2 { ++n } END { exit bad || n < 8 }' run/history.csv >out.txt ||
+    fail "$name: $(cat out.txt)"
+done
+
+# --- a block that a floor's adhesion stops after v^2 m / 2 c: in dynamics, too ---
+cat >stops.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, end: 0.5, step: 2e-3}
+grid: {box: {min: [0, 0], max: [3, 1.5]}, size: 0.125}
+bodies: [{name: up, shape: {box: {min: [0.5, 0.5], max: [1.5, 1]}}, material: m, k0: 0, velocity: [1, 0]}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
+walls: [{name: w, shape: {half-space: {point: [0, 0.5], normal: [0, 1]}}, contact: friction, adhesion: 1000}]
+loads: {gravity: [0, -10]}
+measures: {left: {momentum: x}, at: {position: x, of: {tracer: [1, 0.75]}}, area: {contact: area, of: {wall: w}}}
+END
+expect "stops" 0 "$talus" run stops.yaml --out run --force --quiet
+awk -F, 'END { exit !($3 < 10 && $3 > -10 && ($4 - 1.25) ^ 2 < 4e-6 && $5 > 0.99 && $5 < 1.01) }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
+
+# --- a wedge into a block: along the edge that it has turned every point touches ---
+cat >wedge.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 10}
+grid: {box: {min: [0, -1], max: [1, 0]}, size: 0.03125}
+bodies: [{name: b, shape: {box: {min: [0, -1], max: [1, 0]}}, points_per_cell: 4, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{on: {boundary: left}, fix: [x]}, {on: {boundary: right}, fix: [x]}, {on: {boundary: bottom}, fix: [x, y]}]
+walls: [{name: wedge, shape: {polygon: [[0, 0], [0.8, 0.4], [0, 0.4]]}, motion: [{displacement: {y: -0.15}}]}]
+measures: {force: {wall_force: y, of: {wall: wedge}}, area: {contact: area, of: {wall: wedge}}}
+END
+expect "a wedge" 0 "$talus" run wedge.yaml --out run --force --quiet
+near area "$(last 4)" 0.171 0.11 # half of it before; an edge of a cell is 0.035
+
+# --- a wall that is not for all bodies may stand in others ---
+sed 's/^bodies:.*/bodies:\n  - {name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, material: m}\n  - {name: other, shape: {box: {min: [1.4, 0], max: [1.8, 1]}}, material: m}/; s/adhesion: 100, motion.*/bodies: [b]}/; s/normal: \[1, 0\]}}/&, bodies: [b]/' side.yaml >others.yaml
+expect "a wall in another body" 0 "$talus" check others.yaml --set 'walls[3].bodies=[b]' --set analysis.type=dynamic --set analysis.steps=null --set analysis.end=1 --set analysis.step=0.01
+! grep -q "goes through" err.txt || fail "$name: $(cat err.txt)"
+sed -i 's/bodies: \[b\]/bodies: [other]/' others.yaml
+expect "a wall in its body" 2 "$talus" check others.yaml --set analysis.type=dynamic --set analysis.steps=null --set analysis.end=1 --set analysis.step=0.01
+says err.txt "wall 'right' goes through a body at the start"
+
+finish
