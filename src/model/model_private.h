@@ -188,6 +188,9 @@ PetscErrorCode WallsAppear(const Model *model, StepReport *report);
 /* contact/interfaces.c. Collective. What no interfaces can be made of, and bodies that go through each
  * other at the start. */
 PetscErrorCode InterfacesStart(Model *model, Diag *diag);
+/* Collective. One of the bodies of interface k has just come: where it was drawn to touch the other one, which has
+ * settled since, it does, up to a tenth of a cell. */
+PetscErrorCode InterfaceCloses(Model *model, PetscInt k);
 /* contact/rigid.c. What walls with mass cannot do; energies of theirs, J, the same on all ranks: of motion, and work of
  * weight and loads since the start. */
 void rigid_check(const Model *model, Diag *diag);

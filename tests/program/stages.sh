@@ -465,4 +465,30 @@ refused "nodes of clouds" "nodes of method gmm are held or free for good" cloud.
 refused "tracers of clouds" "tracers of method gmm begin where the body does" cloud.yaml --set 'stages[1].measures={later: {displacement: y, of: {tracer: [0.6, 1.9]}}}'
 expect "other nodes of clouds" 1 "$talus" run cloud.yaml --out bad --quiet --set 'stages[1].boundary=[{name: left, on: {x: 0, y: [0, 1]}, fix: [x]}]'
 says err.txt "nodes of method gmm are held or free for good, and these are others than before"
+# A body that comes to stand on another one, which has settled by a hair since both were drawn: it stands there.
+cat >comes.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 2}
+grid: {box: {min: [-0.5, 0], max: [3.5, 1.5]}, size: 0.125}
+bodies:
+  - {name: low, shape: {box: {min: [0, 0], max: [3, 0.5]}}, material: m}
+  - {name: up, shape: {box: {min: [0.5, 0.5], max: [1.5, 1]}}, material: m, absent: true}
+materials: {m: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0}}
+boundary: [{name: floor, on: {boundary: bottom}, fix: [x, y]}]
+interfaces: [{name: i, between: [up, low], friction: 0.5}]
+loads: {gravity: [0, -10]}
+measures: {floor: {reaction: y, of: {boundary: floor}}, joint: {interface_force: y, of: {interface: i}}, area: {interface: area, of: {interface: i}}}
+stages:
+  - {name: one}
+  - {name: two, bodies: [{name: up, absent: false}]}
+END
+for set in basis=null 'basis={cell: {}}' method=fem interfaces[0].contact=bonded materials.m.young=1e6; do
+  own=grid.size=0.125
+  [ "$set" != method=fem ] || own='grid.box={min: [0, 0], max: [3, 1]}'
+  law=interfaces[0].name=i
+  [ "$set" != interfaces[0].contact=bonded ] || law=interfaces[0].friction=null
+  expect "comes to stand, $set" 0 "$talus" run comes.yaml --set "$set" --set "$own" --set "$law" --out comes --force --quiet
+  awk -F, 'END { exit !(($4 - 20000) ^ 2 < 1 && ($5 - 5000) ^ 2 < 1 && $6 > 0.99 && $6 < 1.02) }' comes/history.csv || fail "$name: $(tail -n 1 comes/history.csv)"
+done
 finish

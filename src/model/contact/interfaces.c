@@ -7,6 +7,7 @@
 /* Of its reach: a part of a body that reaches deeper into another body at the start is a mistake; what
  * reaches less was made to fit. */
 #define THROUGH 0.1
+#define CLOSES 0.1       /* of a cell: a wider gap is told of (stage/gaps.c) */
 #define MADE_TO_FIT 0.35 /* of the size of a point: a gap within it is one between polygons */
 
 static void check_method(const Model *m, Diag *diag)
@@ -205,5 +206,37 @@ PetscErrorCode InterfacesStart(Model *m, Diag *diag)
   if (m->method->clouds) PetscCall(WarnOfStrangers(m, &in, bounds, share, diag));
   PetscCall(PetscFree(bounds));
   PetscCall(PetscFree(share));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode InterfaceCloses(Model *m, PetscInt k)
+{
+  const SurfaceInput in = {
+    .comm = m->comm, .kinematics = m->c->kinematics, .grid = m->grid, .points = m->points, .materials = m->materials};
+  const PetscInt a = case_body(m->c, m->c->interfaces[k].between[0]),
+                 b = case_body(m->c, m->c->interfaces[k].between[1]);
+  const PetscReal hair = CLOSES * m->grid->smallest;
+  PetscReal *bounds;
+  PetscMPIInt rank;
+  Surface first, second;
+  SurfacePair pair;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
+  PetscCall(PetscMalloc1(6 * m->c->n_bodies, &bounds));
+  PetscCall(SurfaceBounds(&in, m->c->n_bodies, bounds));
+  PetscCall(SurfaceGather(&in, a, bounds + 6 * b, SURFACE_SEARCH * m->grid->smallest, &first));
+  PetscCall(SurfaceGather(&in, b, bounds + 6 * a, SURFACE_SEARCH * m->grid->smallest, &second));
+  for (const SurfacePoint *p = first.point; p < first.point + first.n; ++p) {
+    if (p->rank != rank || !surface_meet(&first, p, &second, m->grid->smallest, &pair)) continue;
+    const PetscReal gap = pair.gap - contact_reach_of(m->points, p->owner, pair.normal);
+    if (!(PetscAbsReal(gap) < hair && pair.gap > 0)) continue;
+    reach_over(m, k, p->owner, &pair);
+    if (m->c->interfaces[k].contact == CONTACT_BONDED) /* holds what touches when it begins, or goes on to touch */
+      contact_kept(m->points, p->owner, m->c->n_walls + k, contact_sides(m->c), 0)[KEPT_STATE] = CONTACT_STICKS;
+  }
+  PetscCall(SurfaceClear(&first));
+  PetscCall(SurfaceClear(&second));
+  PetscCall(PetscFree(bounds));
   PetscFunctionReturn(0);
 }

@@ -93,6 +93,14 @@ static PetscErrorCode KeepAccount(Model *m, PetscReal before, PetscReal walls, P
   PetscFunctionReturn(0);
 }
 
+/* Does one of its bodies come, and is the other there? */
+static PetscBool meets_who_comes(const Case *c, const Case *from, const InterfaceSpec *s)
+{
+  const PetscInt a = case_body(c, s->between[0]), b = case_body(c, s->between[1]);
+  if (c->bodies[a].absent || c->bodies[b].absent) return PETSC_FALSE;
+  return (PetscBool)(body_comes(c, from, a) || body_comes(c, from, b));
+}
+
 /* All that the tables give; reason where they make no sense. */
 static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool next, PetscBool onto, Diag *diag,
                            char reason[256])
@@ -114,6 +122,8 @@ static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool
   PetscCall(ReasonShare(m->comm, reason));
   if (reason[0] || diag_errors(diag) > errors) PetscFunctionReturn(0);
   if (m->method->restores_grid || m->grid->n_fields > 1) PetscCall(BodiesStand(m, from, diag));
+  for (PetscInt k = 0; next && k < m->c->n_interfaces; ++k)
+    if (meets_who_comes(m->c, from, m->c->interfaces + k)) PetscCall(InterfaceCloses(m, k));
   walls = rigid_motion_before(m, from);
   PetscCall(ResetMotion(m, from, next));
   PetscCall(KeepAccount(m, before, walls, next));

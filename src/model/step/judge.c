@@ -10,6 +10,7 @@
  * moves in time stays below 1.5 */
 #define MOST_STRETCH 10
 #define MOST_STRETCH_IN_TIME 3
+#define AWAY 1 /* of the distance in which walls are looked for */
 /* of a cell: nothing can be stretched that much */
 #define HARDLY_MOVED 0.2
 #define HARDLY_MOVED_IN_TIME 0.1
@@ -67,6 +68,27 @@ static PetscBool hardly_moved(const Model *m)
   return !m->method->clouds && largest < least_motion(m);
 }
 
+/* In statics nothing but the length of the step bounds how far a body goes, and walls are looked for within a cell of
+ * where it was: beyond that it may have come through one. */
+static PetscErrorCode JudgeContact(const Model *m, StepReport *report)
+{
+  const Contact *s = m->contact;
+  PetscReal farthest = 0;
+
+  PetscFunctionBeginUser;
+  if (!s || m->scheme->inertia) PetscFunctionReturn(0);
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
+    farthest = PetscMax(farthest, contact_went(s, c, m->nodes->du));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &farthest, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  if (farthest <= AWAY * s->near) PetscFunctionReturn(0);
+  snprintf(report->leap, sizeof report->leap,
+           "it leapt: what was near a wall or another body went %.3g m, %.2g cells, in one step", (double)farthest,
+           (double)(farthest / s->near));
+  report->newton.converged = PETSC_FALSE;
+  report->newton.reason = report->leap;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode JudgeStep(const Model *m, StepReport *report)
 {
   const Support *w = m->space->support;
@@ -94,7 +116,10 @@ PetscErrorCode JudgeStep(const Model *m, StepReport *report)
     }
   }
   PetscCallMPI(MPI_Allreduce(&local, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, m->comm));
-  if (worst.stretch <= (m->scheme->inertia ? MOST_STRETCH_IN_TIME : MOST_STRETCH)) PetscFunctionReturn(0);
+  if (worst.stretch <= (m->scheme->inertia ? MOST_STRETCH_IN_TIME : MOST_STRETCH)) {
+    PetscCall(JudgeContact(m, report));
+    PetscFunctionReturn(0);
+  }
   for (PetscInt d = 0; d < m->dim && rank == worst.rank; ++d) x[d] = point_real(m->points, POINT_X, at)[d];
   PetscCallMPI(MPI_Bcast(x, 3, MPIU_REAL, worst.rank, m->comm));
   snprintf(report->leap, sizeof report->leap,

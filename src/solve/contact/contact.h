@@ -177,6 +177,8 @@ PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n
 PetscReal contact_face(const Points *points, PetscInt p, const PetscReal n[3]);
 /* Has the square of an edge's length, or the cosine of an angle, at point p changed by `limit` since the start? */
 PetscBool contact_is_strained(const Points *points, PetscInt p, PetscReal limit);
+/* How far the increments take it against its wall, or the other body, m. */
+PetscReal contact_went(const Contact *contact, const ContactPoint *c, const PetscReal *du);
 /* Position of a contact point with the field's increments, times `whole`. */
 void contact_place(const Contact *contact, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal x[3]);
 

@@ -17,6 +17,14 @@ void contact_place(const Contact *s, const ContactPoint *c, const PetscReal *du,
   for (int d = 0; d < 3; ++d) x[d] = c->x[d] + way[d];
 }
 
+PetscReal contact_went(const Contact *s, const ContactPoint *c, const PetscReal *du)
+{
+  PetscReal way[3], square = 0;
+  take_way(s, c, du, 1, way);
+  for (int d = 0; d < 3; ++d) square += PetscSqr(way[d] - c->swept[d]);
+  return PetscSqrtReal(square);
+}
+
 /* A place in the wall, beside a corner, may be nearer to another face than that which the material came to: it would be
  * pushed out there, in every step anew. Then the owner, which stands outside, sees the wall for it. */
 static PetscBool see_wall(const Contact *s, ContactPoint *c, PetscReal t, const PetscReal x[3], WallPlace *place)
