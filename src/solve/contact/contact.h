@@ -169,7 +169,7 @@ void contact_start(const NodalScene *scene, ContactPoint *c);
 PetscBool contact_passes(const Contact *contact, ContactPoint *c, PetscReal gap, PetscBool first);
 /* Collective. Those between bodies. */
 PetscErrorCode ContactFindBodies(Contact *contact, const NodalScene *scene);
-/* contact_section.c. Surface that material point p stands for before a wall with the normal n, as the point is now, m2.
+/* touch/section.c. Surface that material point p stands for before a wall with the normal n, as the point is now, m2.
  * radius: of the point and of that surface, m. */
 PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n[3], const PetscReal radius[2]);
 /* Of the surface of its body that material point p was given (POINT_FACE) what looks at a wall with the normal n now,
@@ -198,7 +198,7 @@ typedef struct {
 } ContactTraction;
 
 /* Collective. Tractions of one wall at this rank's points in contact, freed with PetscFree. du: increments of
- * the last step; share: the walls' forces over those of the balance (contact_traction.c). */
+ * the last step; share: the walls' forces over those of the balance (touch/traction.c). */
 PetscErrorCode ContactTractions(const Contact *contact, const Grid *grid, PetscInt wall, const PetscReal *du,
                                 PetscReal share, PetscInt *n, ContactTraction **tractions);
 
