@@ -5,6 +5,8 @@
 #include "solve/contact/contact.h"
 #include "solve/contact/surface/surface.h"
 
+#define LEAP 0.02 /* of a cell: a gap that leaps by more is one, as behind a corner */
+
 /* Local nodes by their numbers in the whole grid: owned ones follow each other, ghosts are sorted. */
 typedef struct {
   PetscInt number, node;
@@ -75,6 +77,15 @@ static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, co
   PetscFunctionReturn(0);
 }
 
+/* Where it slides, a point stands before ever other points of the other body, whose surfaces do not go on into each
+ * other: to close what its gap so leaps by would take a force that grows with the square of the step's shortness. */
+static void go_on_touching(const Contact *s, ContactPoint *c)
+{
+  if (c->before == CONTACT_OPEN || PetscAbsReal(c->open) > LEAP * s->length) return;
+  c->reach += c->open;
+  c->open = 0;
+}
+
 static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder *f, PetscInt interface,
                            const Surface body[2], const SurfacePoint *p, const SurfacePair *pair)
 {
@@ -93,6 +104,7 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
   contact_take_law(s, scene, c);
   contact_remember(c, s->dim, kept, pair->normal);
   c->open = pair->gap - c->reach;
+  if (scene->c->analysis.type == ANALYSIS_DYNAMIC) go_on_touching(s, c);
   if (contact_passes(s, c, c->open, scene->first)) {
     --s->n;
     PetscFunctionReturn(0);
