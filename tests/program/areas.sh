@@ -78,6 +78,26 @@ for radius in 0.4 0.43 0.45 0.47; do
   near area "$(last 4)" "$(awk -v r=$radius 'BEGIN { print 3.14159265 * r * r }')" 5e-4
 done
 
+# ... and in two directions, at its corners
+cat >corners.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 4}
+grid: {box: {min: [0, 0], max: [2, 2]}, size: 0.125}
+bodies:
+  - {name: low, shape: {box: {min: [0.25, 0], max: [1.75, 0.81]}}, material: m}
+  - {name: top, shape: {box: {min: [0.58, 0.81], max: [1.42, 1.33]}}, material: m}
+materials: {m: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0}}
+boundary: [{on: {y: 0}, fix: [x, y]}]
+walls: [{name: p, shape: {half-space: {point: [0.58, 0], normal: [1, 0]}}, bodies: [top], motion: [{displacement: {x: 0.02}}]}]
+interfaces: [{name: i, between: [top, low], adhesion: 500}]
+loads: {gravity: [0, -10], gravity_amplitude: [[0, 1], [1, 1]]}
+measures: {along: {interface_force: x, of: {interface: i}}, area: {interface: area, of: {interface: i}}}
+END
+expect "corners" 0 "$talus" run corners.yaml --out run --force --quiet
+near along "$(last 3)" -420 1e-3
+near area "$(last 4)" 0.84 1e-3
+
 # --- adhesion of a body that is pushed over another one: of the whole joint in every step, whichever of its points bear ---
 cat >joint.yaml <<'END'
 kinematics: plane-strain

@@ -3,7 +3,10 @@
 
 #define NEXT 1.5    /* times the distance of the nearest points: layers of a rule are farther apart */
 #define WITHIN 1e-3 /* of the cell: so far inside a side the body is asked for */
-#define ALONG 1e-6  /* cosine between normals of sides: these are not at right angles */
+#define ABOUT 0.1   /* of half a part's side: what measures its sides is off by less */
+#define STRAIGHT 1e-3
+#define HALVINGS 30
+#define ALONG 1e-6 /* cosine between normals of sides: these are not at right angles */
 
 /* From the line or plane of a side: through its first nodes. */
 static PetscReal distance_to_side(const Cell *cell, PetscInt side, const PetscReal *x, const PetscReal *position)
@@ -107,16 +110,38 @@ static PetscBool half_sides(CellType type, const PetscReal *x, PetscReal *half)
   return PETSC_TRUE;
 }
 
-/* Does the body end so far from a place along axis d? */
-static PetscBool ends_at(const Seeding *s, const PetscReal *position, PetscInt d, PetscReal away)
+/* How far the body goes on from a place along axis d, if it ends at about `away`; 0: it does not end there. */
+static PetscReal end_near(const Seeding *s, const PetscReal *position, PetscInt d, PetscReal away)
 {
   const PetscInt dim = s->source->dim;
-  PetscReal within[3] = {0}, beyond[3] = {0};
-  for (PetscInt i = 0; i < dim; ++i) within[i] = beyond[i] = position[i];
-  within[d] += (1 - WITHIN) * away;
-  beyond[d] += (1 + WITHIN) * away;
-  return (PetscBool)(shape_contains(&s->body->shape, dim, within, 0) &&
-                     !shape_contains(&s->body->shape, dim, beyond, 0));
+  PetscReal at[3] = {0}, low = (1 - ABOUT) * away, high = (1 + ABOUT) * away;
+  for (PetscInt i = 0; i < dim; ++i) at[i] = position[i];
+  at[d] = position[d] + low;
+  if (!shape_contains(&s->body->shape, dim, at, 0)) return 0;
+  at[d] = position[d] + high;
+  if (shape_contains(&s->body->shape, dim, at, 0)) return 0;
+  for (int k = 0; k < HALVINGS; ++k) {
+    at[d] = position[d] + 0.5 * (low + high);
+    if (shape_contains(&s->body->shape, dim, at, 0)) low = 0.5 * (low + high);
+    else high = 0.5 * (low + high);
+  }
+  return 0.5 * (low + high);
+}
+
+/* The same where it ends straight across the axis: beside the place as it does before it. */
+static PetscReal straight_end(const Seeding *s, const PetscReal *position, PetscInt d, PetscReal away,
+                              const PetscReal *aside)
+{
+  const PetscReal end = end_near(s, position, d, away);
+  PetscReal at[3] = {0};
+  for (PetscInt i = 0; i < s->source->dim; ++i) at[i] = position[i];
+  for (PetscInt i = 0; i < s->source->dim && end != 0; ++i)
+    for (int side = -1; side <= 1 && i != d; side += 2) {
+      at[i] = position[i] + 0.5 * side * aside[i];
+      if (PetscAbsReal(end_near(s, at, d, away) - end) > STRAIGHT * PetscAbsReal(end)) return 0;
+      at[i] = position[i];
+    }
+  return end;
 }
 
 void seed_corner_of_part(const Seeding *s, CellType type, const PetscReal *x, const SeedPart *part,
@@ -125,10 +150,11 @@ void seed_corner_of_part(const Seeding *s, CellType type, const PetscReal *x, co
   const PetscInt dim = s->source->dim;
   PetscReal half[3], square = 0;
   if (!half_sides(type, x, half)) return;
+  for (PetscInt d = 0; d < dim; ++d) half[d] *= PetscSqrtReal(3 * part->spread[d]); /* of what fills its part evenly */
   for (PetscInt d = 0; d < dim; ++d) {
-    const PetscReal away = half[d] * PetscSqrtReal(3 * part->spread[d]); /* of what fills its part evenly */
-    const PetscBool low = ends_at(s, position, d, -away), high = ends_at(s, position, d, away);
-    corner[d] = low == high ? 0 : high ? away : -away;
+    const PetscReal low = straight_end(s, position, d, -half[d], half),
+                    high = straight_end(s, position, d, half[d], half);
+    corner[d] = low != 0 && high != 0 ? 0 : low + high;
     square += PetscSqr(corner[d]);
   }
   for (PetscInt d = 0; d < dim && square <= PetscSqr((1 + WITHIN) * reach); ++d) corner[d] = 0;
