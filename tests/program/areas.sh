@@ -98,6 +98,12 @@ expect "corners" 0 "$talus" run corners.yaml --out run --force --quiet
 near along "$(last 3)" -420 1e-3
 near area "$(last 4)" 0.84 1e-3
 
+# A gap of the digits in which places are written is none.
+for low in 0.8100000001 0.81000001 0.810005; do
+  expect "a gap, $low" 0 "$talus" run corners.yaml --set "bodies[1].shape.box.min=[0.58, $low]" --out run --force --quiet
+  near along "$(last 3)" -420 1e-3
+done
+
 # --- adhesion of a body that is pushed over another one: of the whole joint in every step, whichever of its points bear ---
 cat >joint.yaml <<'END'
 kinematics: plane-strain

@@ -336,6 +336,22 @@ paste -d , near/history.csv far/history.csv |
   awk -F, 'NR > 1 { d = $3 - $8; f = $4 - $9; g = $5 - $10; if (d * d > 1e-14 || f * f > 1e-4 || g * g > 1e-2) exit 1 } END { exit NR != 6 || $4 < 19999 || $5 < 7990 }' ||
   fail "far from the origin otherwise: $(tail -n 1 near/history.csv) and $(tail -n 1 far/history.csv)"
 
+# A terrain with posts 2 m apart, as finely as maps have them: single precision knows such places to half a metre.
+awk 'BEGIN { print "ncols 21\nnrows 21\nxllcorner 499980\nyllcorner 4999980\ncellsize 2"; for (i = 0; i < 21; ++i) { for (k = 0; k < 21; ++k) printf "100.25 "; print "" } }' >ter.asc
+cat >terrain.yaml <<'END'
+kinematics: 3d
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [500000, 5000000, 100], max: [500004, 5000002, 101.5]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [500002, 5000000.5, 100.25], max: [500003.25, 5000001.5, 100.75]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.2}}
+walls: [{name: t, shape: {terrain: {file: ter.asc}}, friction: 0.05}]
+loads: {gravity: [0, 0, -10]}
+measures: {borne: {wall_force: z, of: {wall: t}}}
+END
+expect "a terrain on a map" 0 "$talus" run terrain.yaml --out terrain --quiet
+awk -F, 'END { exit !(($3 - 6250) ^ 2 < 1e-4) }' terrain/history.csv || fail "$name: $(tail -n 1 terrain/history.csv)"
+
 # --- walls that appear amidst material ---
 for type in dynamic explicit; do
   sed -e "s/type: static, steps: 4/type: $type, end: 0.1, step: 0.01/" -e 's/normal: \[1, 0\]}}, motion.*/normal: [1, 0]}}, from: 0.05}/' -e 's/point: \[0, 0\], normal: \[1, 0\]/point: [0.1, 0], normal: [1, 0]/' near.yaml >gate.yaml

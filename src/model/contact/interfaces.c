@@ -8,6 +8,7 @@
  * reaches less was made to fit. */
 #define THROUGH 0.1
 #define CLOSES 0.1       /* of a cell: a wider gap is told of (stage/gaps.c) */
+#define HAIR 1e-4        /* of a cell: a gap within it is one of the digits in which places are written */
 #define MADE_TO_FIT 0.35 /* of the size of a point: a gap within it is one between polygons */
 
 static void check_method(const Model *m, Diag *diag)
@@ -104,7 +105,7 @@ static void fit(Model *m, PetscInt k, const Surface *first, const Surface *secon
   for (const SurfacePoint *p = first->point; p < first->point + first->n; ++p) {
     if (p->rank != rank || !surface_meet(first, p, second, m->grid->smallest, &pair)) continue;
     const PetscReal reach = contact_reach_of(m->points, p->owner, pair.normal), gap = pair.gap - reach;
-    if (gap > 0 && gap < MADE_TO_FIT * p->size && bonded) reach_over(m, k, p->owner, &pair);
+    if (gap > 0 && gap < (bonded ? MADE_TO_FIT * p->size : HAIR * m->grid->smallest)) reach_over(m, k, p->owner, &pair);
     if (gap >= 0) continue;
     if (gap > -THROUGH * reach) contact_take_back(m->points, p->owner, pair.normal, pair.gap);
     else if (gap < *deepest) {

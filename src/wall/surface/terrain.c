@@ -69,7 +69,7 @@ PetscErrorCode TerrainTriangles(const Relief *r, Triangles *t, size_t size, char
     PetscFunctionReturn(0);
   }
   PetscCall(TrianglesAllocate(2 * squares + 3 * rim, t));
-  for (PetscInt i = 0; i < t->n; ++i) t->number[i] = i + 1;
+  t->epsilon = PETSC_MACHINE_EPSILON; /* maps are far from their origin */
   add_rim(r, add_top(r, t->corner));
   PetscFunctionReturn(0);
 }

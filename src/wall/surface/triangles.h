@@ -14,7 +14,8 @@ typedef struct {
   PetscInt (*side)[2];    /* n_edges: 3 triangle + k of the triangles that meet there, -1: none */
   PetscInt *met;          /* n_edges: how many they are */
   PetscReal (*normal)[3]; /* n, unit */
-  PetscReal tolerance;    /* m, what single precision cannot tell apart */
+  PetscReal epsilon;      /* by what share numbers were rounded: those of files in single precision, as a rule */
+  PetscReal tolerance;    /* m, what that cannot tell apart */
 } Triangles;
 
 PetscErrorCode TrianglesFree(Triangles *t);

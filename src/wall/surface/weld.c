@@ -12,6 +12,7 @@ PetscErrorCode TrianglesAllocate(PetscInt n, Triangles *t)
   PetscCall(PetscMalloc1(n, &t->corner));
   PetscCall(PetscMalloc1(n, &t->number));
   for (PetscInt i = 0; i < n; ++i) t->number[i] = i + 1;
+  t->epsilon = FLT_EPSILON;
   PetscFunctionReturn(0);
 }
 
@@ -86,7 +87,7 @@ static void set_tolerance(Triangles *t)
   const PetscReal *x = (const PetscReal *)t->corner;
   PetscReal largest = 0;
   for (PetscInt i = 0; i < 9 * t->n; ++i) largest = PetscMax(largest, fabs(x[i]));
-  t->tolerance = PetscMax(4 * FLT_EPSILON * largest, 1e-100);
+  t->tolerance = PetscMax(4 * t->epsilon * largest, 1e-100);
 }
 
 /* Keep triangles of three different vertices. */
