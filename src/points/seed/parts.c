@@ -390,35 +390,40 @@ static PetscReal growth(const Measure *m)
   return PetscAbsReal(more) < 0.1 * cut ? 1 + more / cut : 1;
 }
 
-SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedPart *part)
+/* Parts of any shape in any cell. */
+static void measure_all(const Seeding *s, CellType type, const PetscReal *x, const SeedRule *rule, SeedPart *part)
 {
-  PetscReal x[CELL_MAX_NODES * 3], whole = 0, inside = 0;
   const PetscInt dim = s->source->dim;
-  Measure m = {.shape = &s->body->shape,
-               .rule = rule,
-               .type = grid_cell_type(s->source, cell),
-               .dim = dim,
-               .x = x,
-               .faces = s->faces};
-  grid_cell_x(s->source, cell, x);
-  m.slack = 1e-10 * PetscPowReal(cell_volume(m.type, x), 1 / (PetscReal)dim);
+  PetscReal whole = 0;
+  Measure m = {.shape = &s->body->shape, .rule = rule, .type = type, .dim = dim, .x = x, .faces = s->faces};
+  m.slack = 1e-10 * PetscPowReal(cell_volume(type, x), 1 / (PetscReal)dim);
   look_whether_straight(&m);
-  if (is_simplex(m.type)) measure_simplex(&m);
+  if (is_simplex(type)) measure_simplex(&m);
   else measure_parts(&m);
   const PetscReal factor = growth(&m);
   for (PetscInt q = 0; q < rule->n; ++q) whole += m.whole[q].volume;
   for (PetscInt q = 0; q < rule->n; ++q) {
     const Sum *sum = m.fine + q;
     part[q] = (SeedPart){.share = (is_whole(&m, q) ? 1 : factor) * sum->volume / whole, .whole = is_whole(&m, q)};
-    if (part[q].share < SEED_NOTHING) part[q].share = 0;
-    inside += part[q].share;
     for (PetscInt d = 0; d < dim; ++d) part[q].face[d] = sum->face[d];
-    for (PetscInt d = 0; d < dim && part[q].share > 0; ++d) {
+    for (PetscInt d = 0; d < dim && part[q].share >= SEED_NOTHING; ++d) {
       part[q].xi[d] = sum->moment[d] / sum->volume;
       part[q].spread[d] = PetscMax(0, sum->second[d] / sum->volume - PetscSqr(part[q].xi[d]));
     }
   }
-  seed_hand_on_faces(part, rule, dim);
-  seed_join_slivers(part, rule->n, dim);
+}
+
+SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedPart *part)
+{
+  const CellType type = grid_cell_type(s->source, cell);
+  PetscReal x[CELL_MAX_NODES * 3], inside = 0;
+  grid_cell_x(s->source, cell, x);
+  if (!seed_box_parts(s, type, x, rule, part)) measure_all(s, type, x, rule, part);
+  for (PetscInt q = 0; q < rule->n; ++q) {
+    if (part[q].share < SEED_NOTHING) part[q].share = 0;
+    inside += part[q].share;
+  }
+  seed_hand_on_faces(part, rule, s->source->dim);
+  seed_join_slivers(part, rule->n, s->source->dim);
   return inside <= 0 ? SEED_NONE : inside >= 1 - SEED_NOTHING ? SEED_WHOLE : SEED_CUT;
 }

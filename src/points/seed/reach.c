@@ -93,8 +93,7 @@ void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, c
     for (PetscInt d = 0; d < cell->dim && (square_on || k == nearest); ++d) corner[d] += away[k] * normal[k][d];
 }
 
-/* Half of the sides of a cell along the axes; PETSC_FALSE: it is no rectangle or brick along them. */
-static PetscBool half_sides(CellType type, const PetscReal *x, PetscReal *half)
+PetscBool seed_half_sides(CellType type, const PetscReal *x, PetscReal *half)
 {
   const Cell *cell = cells + type;
   if (cell->nodes != 1 << cell->dim) return PETSC_FALSE;
@@ -149,7 +148,7 @@ void seed_corner_of_part(const Seeding *s, CellType type, const PetscReal *x, co
 {
   const PetscInt dim = s->source->dim;
   PetscReal half[3], square = 0;
-  if (!half_sides(type, x, half)) return;
+  if (!seed_half_sides(type, x, half)) return;
   for (PetscInt d = 0; d < dim; ++d) half[d] *= PetscSqrtReal(3 * part->spread[d]); /* of what fills its part evenly */
   for (PetscInt d = 0; d < dim; ++d) {
     const PetscReal low = straight_end(s, position, d, -half[d], half),

@@ -74,6 +74,10 @@ void seed_domain(CellType type, const PetscReal *x, const PetscReal *xi, PetscIn
 PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *position, PetscReal section,
                      const SeedRule *rule, PetscInt q, const unsigned char *outer);
 
+/* Half of the sides of a cell along the axes; PETSC_FALSE: it is no rectangle or brick along them. */
+PetscBool seed_half_sides(CellType type, const PetscReal *x, PetscReal *half);
+/* bricks.c. Parts of a cell that a body's box cuts, to round-off; PETSC_FALSE: cell, points and body are no bricks. */
+PetscBool seed_box_parts(const Seeding *s, CellType type, const PetscReal *x, const SeedRule *rule, SeedPart *part);
 /* Of a part of a rectangle or brick that the surface cuts: to the sides of the body that are its ends along the axes,
  * or to the corner or edge between them; 0 where none is farther than the nearest surface. */
 void seed_corner_of_part(const Seeding *s, CellType type, const PetscReal *x, const SeedPart *part,
