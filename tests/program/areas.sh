@@ -31,6 +31,19 @@ for low in -0.375 -0.4 -0.5; do
   near peak "$(last 6)" 11200 0.02 # its foot is held by friction
 done
 
+# --- a box has its mass, wherever its sides and edges are in their cells ---
+sed -e 's/LOW/-0.4/; s/HIGH/1.6/; s/box: {min: \[0, 0, 0\], max: \[1, 1, 1\]}/box: {min: [0.13, -0.07, 0], max: [0.97, 0.61, 0.38]}/' -e 's/^measures.*/measures: {mass: {mass: total}, force: {wall_force: z, of: {wall: low}}, area: {contact: area, of: {wall: low}}}/' cube.yaml >case.yaml
+for points in 8 27; do
+  expect "a box of $points" 0 "$talus" run case.yaml --set "bodies[0].points_per_cell=$points" --out run --force --quiet
+  near mass "$(last 3)" 217.056 1e-12 # 1000 x 0.84 x 0.68 x 0.38
+  near force "$(last 4)" 2170.56 1e-8
+  near area "$(last 5)" 0.5712 2e-4
+done
+
+# ... and a strip that is thinner than the places where cells are looked at are apart, too
+expect "a strip" 0 "$talus" run case.yaml --set 'bodies[0].shape.box.max=[0.97, 0.61, 0.015]' --set 'grid.box={min: [-0.5, -0.5, -0.05], max: [1.5, 1.5, 1.95]}' --out run --force --quiet
+near mass "$(last 3)" 8.568 1e-12
+
 # --- adhesion of a side that is pressed by its neighbour alone and dragged along ---
 cat >side.yaml <<'END'
 kinematics: plane-strain

@@ -54,19 +54,41 @@ static void take_face(PetscInt dim, const Brick *part, const Brick *box, const B
   }
 }
 
-PetscBool seed_box_parts(const Seeding *s, CellType type, const PetscReal *x, const SeedRule *rule, SeedPart *part)
+/* The body's box in the reference cell; PETSC_FALSE: body and cell are no bricks. */
+static PetscBool box_of(const Seeding *s, CellType type, const PetscReal *x, PetscReal *half, Brick *box)
 {
   const PetscInt dim = s->source->dim;
   const Shape *shape = &s->body->shape;
-  PetscReal half[3];
-  Brick box;
-  if (shape->kind != SHAPE_BOX || !seed_half_sides(type, x, half) || !fills_cell(rule, dim)) return PETSC_FALSE;
+  if (shape->kind != SHAPE_BOX || !seed_half_sides(type, x, half)) return PETSC_FALSE;
   for (PetscInt d = 0; d < dim; ++d) {
     PetscReal low = x[d];
     for (PetscInt i = 1; i < cells[type].nodes; ++i) low = PetscMin(low, x[i * dim + d]);
-    box.low[d] = (shape->min[d] - low) / half[d] - 1;
-    box.high[d] = (shape->max[d] - low) / half[d] - 1;
+    box->low[d] = (shape->min[d] - low) / half[d] - 1;
+    box->high[d] = (shape->max[d] - low) / half[d] - 1;
   }
+  return PETSC_TRUE;
+}
+
+PetscBool seed_box_fill(const Seeding *s, CellType type, const PetscReal *x, PetscReal within, SeedFill *fill)
+{
+  PetscReal half[3];
+  Brick box;
+  if (!box_of(s, type, x, half, &box)) return PETSC_FALSE;
+  *fill = SEED_WHOLE;
+  for (PetscInt d = 0; d < s->source->dim; ++d) {
+    const PetscReal length = PetscMin(1, box.high[d]) - PetscMax(-1, box.low[d]);
+    if (length <= 2 * within) return *fill = SEED_NONE, PETSC_TRUE;
+    if (length < 2 * (1 - within)) *fill = SEED_CUT;
+  }
+  return PETSC_TRUE;
+}
+
+PetscBool seed_box_parts(const Seeding *s, CellType type, const PetscReal *x, const SeedRule *rule, SeedPart *part)
+{
+  const PetscInt dim = s->source->dim;
+  PetscReal half[3];
+  Brick box;
+  if (!fills_cell(rule, dim) || !box_of(s, type, x, half, &box)) return PETSC_FALSE;
   for (PetscInt q = 0; q < rule->n; ++q) {
     const Brick whole = part_of(rule, dim, q);
     Brick left = whole;

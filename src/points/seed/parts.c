@@ -50,7 +50,9 @@ SeedFill seed_fill(const Seeding *s, PetscInt cell)
   const PetscInt n = dim == 2 ? look * look : look * look * look;
   PetscReal x[CELL_MAX_NODES * 3], xi[3], position[3];
   PetscInt inside = 0;
+  SeedFill fill;
   grid_cell_x(s->source, cell, x);
+  if (seed_box_fill(s, type, x, WITHIN, &fill)) return fill;
   for (PetscInt k = 0; k < n; ++k) {
     PetscReal left = 1;
     for (PetscInt d = 0, rest = k; d < dim; ++d, rest /= look) {

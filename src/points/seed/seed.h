@@ -76,6 +76,9 @@ PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *positio
 
 /* Half of the sides of a cell along the axes; PETSC_FALSE: it is no rectangle or brick along them. */
 PetscBool seed_half_sides(CellType type, const PetscReal *x, PetscReal *half);
+/* bricks.c. Is there anything of a body's box in a cell, but for `within` of its sides? PETSC_FALSE: they are no
+ * bricks. */
+PetscBool seed_box_fill(const Seeding *s, CellType type, const PetscReal *x, PetscReal within, SeedFill *fill);
 /* bricks.c. Parts of a cell that a body's box cuts, to round-off; PETSC_FALSE: cell, points and body are no bricks. */
 PetscBool seed_box_parts(const Seeding *s, CellType type, const PetscReal *x, const SeedRule *rule, SeedPart *part);
 /* Of a part of a rectangle or brick that the surface cuts: to the sides of the body that are its ends along the axes,
