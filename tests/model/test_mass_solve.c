@@ -72,7 +72,7 @@ static void check(PetscInt dim, const char *basis, PetscInt most)
   subtract(m, &c);
   for (PetscInt i = 0; i < c.size; ++i) c.x[i] = 0;
   CALL(MassLack(&c, enough));
-  for (int f = 0; f < MOTIONS; ++f) enough[f] *= PetscSqr(1e-10);
+  for (int f = 0; f < MOTIONS; ++f) enough[f] *= PetscSqr(3e-11);
   CALL(MassSolveRun(&c, enough, 300));
   const PetscInt sweeps = c.products;
   CALL(GridToGhosts(m->grid, c.width, c.x));
