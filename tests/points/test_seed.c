@@ -267,7 +267,10 @@ static void mistakes_are_told(void **state)
   t->body[0].points_per_cell = 4;
   set_box(t->body, 5, 0, 6, 1);
   SAYS(t, 1, "body 'first' holds the centre of no cell", "[5, 6] x [0, 1]", "[0, 3] x [0, 2]", "outside the grid");
+  /* a box is found however thin, and has its volume; others between the places where cells are looked at are not */
   set_box(t->body, 0.3, 0, 0.31, 2);
+  SAYS(t, 0, "");
+  t->body[0].shape = (Shape){.kind = SHAPE_BALL, .centre = {0.34, 0.09}, .radius = 0.01};
   SAYS(t, 1, "thinner than a cell", "0.25");
   t->body[0].has_shape = PETSC_FALSE;
   t->body[0].region = nowhere;
