@@ -148,8 +148,8 @@ static void test_lifts(void **state)
   CALL(ModelDestroy(&m));
 }
 
-/* A block that two smooth walls press together by d: the springs on both sides are in line with it, p = E' d / (L + 2 h E'
- * / (k M)), and as much softer than a cell as they are told. */
+/* A block that two smooth walls press together by d: the springs on both sides are in line with it,
+ * p = E' d / (L + 2 h E' / (k M)), and as much softer than a cell as they are told. */
 static void test_pressed(void **state)
 {
   static const PetscReal stiffness[] = {1, 1.7, 5.6, 17};

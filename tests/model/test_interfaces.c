@@ -248,8 +248,8 @@ static void test_collides(void **state)
   }
 }
 
-/* Steps are the same on any number of ranks: of implicit ones with the direct solver, since several ranks would iterate,
- * and what may be left of gaps would differ. */
+/* Steps are the same on any number of ranks: of implicit ones with the direct solver, since several ranks would
+ * iterate, and what may be left of gaps would differ. */
 static void test_ranks(void **state)
 {
   static const Pair pairs[] = {{"mpm", "gimp", CELL_QUADRILATERAL, 0.2, "explicit", "consistent"},

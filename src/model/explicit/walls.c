@@ -157,8 +157,8 @@ static void move_of(const Model *m, const Explicit *e, const ContactPoint *c, Pe
 }
 
 /* Work that sliding by s takes: of the mean of the force and of that which it leads to, since force and motion stand
- * half a substep apart; what is bonded or sticks does not slide, and what its springs have stored when it opens goes the
- * way of all springs. */
+ * half a substep apart; what is bonded or sticks does not slide, and what its springs have stored when it opens goes
+ * the way of all springs. */
 static PetscReal sliding_work(const ContactPoint *c, const PetscReal s[3])
 {
   PetscReal next[3], square = 0, work = 0;

@@ -126,7 +126,8 @@ static PetscErrorCode Refit(Column *column, PetscInt64 rows, PetscInt n, PetscIn
   PetscFunctionReturn(0);
 }
 
-/* Springs of another stiffness go on with the force that they had: surfaces are where another scheme would find them. */
+/* Springs of another stiffness go on with the force that they had: surfaces are where another scheme would find
+ * them. */
 static void let_go_of_springs(const Case *c, const Case *from, const Column *contact, PetscInt64 rows, PetscInt dim)
 {
   const PetscInt sides = contact_sides(c), side = contact_kept_side(dim, sides);

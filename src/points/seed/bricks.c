@@ -39,7 +39,7 @@ static PetscBool fills_cell(const SeedRule *rule, PetscInt dim)
   return (PetscBool)(PetscAbsReal(sum - (1 << dim)) < SAME);
 }
 
-/* The box's own surface in a part, as a vector outwards; what lies along the cell's sides is no part of it (sides.c). */
+/* The box's own surface in a part, as a vector outwards; of what lies along the cell's sides knows reach.c. */
 static void take_face(PetscInt dim, const Brick *part, const Brick *box, const Brick *left, const PetscReal *half,
                       PetscReal *face)
 {

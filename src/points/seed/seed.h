@@ -57,8 +57,8 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
 /* slivers.c. Points that are next to nothing go to those beside them, or, where a cell has no others, are one: whatever
  * comes first, so that a body and its image in a mirror have the same points. */
 void seed_join_slivers(SeedPart *part, PetscInt n, PetscInt dim);
-/* A surface along the line between two parts is found in the one beyond it, which has nothing of the body: it is that of
- * the nearest one that has. */
+/* A surface along the line between two parts is found in the one beyond it, which has nothing of the body: it is that
+ * of the nearest one that has. */
 void seed_hand_on_faces(SeedPart *part, const SeedRule *rule, PetscInt dim);
 
 /* Half lengths l of the domain of a point at xi, in a cell with nodes at x whose lattice has `side`

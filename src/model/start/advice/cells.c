@@ -11,7 +11,7 @@ static PetscBool has_equal_shares(PetscInt points_per_cell)
   return points_per_cell == 1 || points_per_cell == 3 || points_per_cell == 4 || points_per_cell == 8;
 }
 
-/* Nodes of gmm are where cells were, and the room that a point has is theirs: in rings, what it has of their section. */
+/* Nodes of gmm are where cells were, and the room that a point has is theirs: in rings what it has of their section. */
 static PetscErrorCode AdviseUneven(const Model *m, PetscInt b, Diag *diag)
 {
   const Points *points = m->points;

@@ -1,6 +1,6 @@
-/* What touches, and what bears: of more points than nodes can follow some bear nothing, a hair off the wall (along an edge
- * that a wedge has turned it was each second one). Their surface counts as touching, and what it bears by adhesion bear
- * those beside them (docs/theory.md, section 65). */
+/* What touches, and what bears: of more points than nodes can follow some bear nothing, a hair off the wall (along an
+ * edge that a wedge has turned it was each second one). Their surface counts as touching, and what it bears by adhesion
+ * bear those beside them (docs/theory.md, section 65). */
 #include "solve/contact/touch/weight.h"
 
 #define HAIR 4e-3  /* of a cell */
