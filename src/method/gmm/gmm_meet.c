@@ -3,12 +3,10 @@
 #include "method/gmm/gmm.h"
 #include "solve/contact/surface/surface.h"
 
-#define AHEAD 4 /* cells: contact points look no farther for the other body (solve/contact/surface) */
-
 PetscReal meeting_reach(const Discretisation *s)
 {
   const PetscReal farthest = PetscMax(s->c->basis.radius, s->c->basis.max_radius);
-  return AHEAD * s->grid->smallest + farthest * s->grid->cloud->spacing;
+  return SURFACE_SEARCH * s->grid->smallest + farthest * s->grid->cloud->spacing;
 }
 
 static PetscBool may_meet(const Discretisation *s, PetscInt p, PetscInt k, const PetscReal *bounds)

@@ -115,22 +115,32 @@ static void fit(Model *m, PetscInt k, const Surface *first, const Surface *secon
   }
 }
 
-static PetscErrorCode FitInterface(Model *m, const SurfaceInput *in, const PetscReal *bounds, PetscInt k, Diag *diag)
+/* What the bodies of interface k have near each other. */
+static PetscErrorCode GatherBoth(const Model *m, const SurfaceInput *in, const PetscReal *bounds, PetscInt k,
+                                 Surface body[2])
 {
   const InterfaceSpec *s = m->c->interfaces + k;
   const PetscInt a = case_body(m->c, s->between[0]), b = case_body(m->c, s->between[1]);
   const PetscReal within = SURFACE_SEARCH * m->grid->smallest;
+
+  PetscFunctionBeginUser;
+  PetscCall(SurfaceGather(in, a, bounds + 6 * b, within, body));
+  PetscCall(SurfaceGather(in, b, bounds + 6 * a, within, body + 1));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FitInterface(Model *m, const SurfaceInput *in, const PetscReal *bounds, PetscInt k, Diag *diag)
+{
+  const InterfaceSpec *s = m->c->interfaces + k;
   PetscReal deepest = 0, all;
   LostPoint worst = {0};
-  Surface first, second;
+  Surface body[2];
   char path[64];
 
   PetscFunctionBeginUser;
-  PetscCall(SurfaceGather(in, a, bounds + 6 * b, within, &first));
-  PetscCall(SurfaceGather(in, b, bounds + 6 * a, within, &second));
-  fit(m, k, &first, &second, &worst, &deepest);
-  PetscCall(SurfaceClear(&first));
-  PetscCall(SurfaceClear(&second));
+  PetscCall(GatherBoth(m, in, bounds, k, body));
+  fit(m, k, body, body + 1, &worst, &deepest);
+  for (int i = 0; i < 2; ++i) PetscCall(SurfaceClear(body + i));
   PetscCall(MPIU_Allreduce(&deepest, &all, 1, MPIU_REAL, MPIU_MIN, m->comm));
   if (all == 0 || deepest > all) PetscFunctionReturn(0);
   snprintf(path, sizeof path, "interfaces[%d]", (int)k);
@@ -214,30 +224,26 @@ PetscErrorCode InterfaceCloses(Model *m, PetscInt k)
 {
   const SurfaceInput in = {
     .comm = m->comm, .kinematics = m->c->kinematics, .grid = m->grid, .points = m->points, .materials = m->materials};
-  const PetscInt a = case_body(m->c, m->c->interfaces[k].between[0]),
-                 b = case_body(m->c, m->c->interfaces[k].between[1]);
   const PetscReal hair = CLOSES * m->grid->smallest;
   PetscReal *bounds;
   PetscMPIInt rank;
-  Surface first, second;
+  Surface body[2];
   SurfacePair pair;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
   PetscCall(PetscMalloc1(6 * m->c->n_bodies, &bounds));
   PetscCall(SurfaceBounds(&in, m->c->n_bodies, bounds));
-  PetscCall(SurfaceGather(&in, a, bounds + 6 * b, SURFACE_SEARCH * m->grid->smallest, &first));
-  PetscCall(SurfaceGather(&in, b, bounds + 6 * a, SURFACE_SEARCH * m->grid->smallest, &second));
-  for (const SurfacePoint *p = first.point; p < first.point + first.n; ++p) {
-    if (p->rank != rank || !surface_meet(&first, p, &second, m->grid->smallest, &pair)) continue;
+  PetscCall(GatherBoth(m, &in, bounds, k, body));
+  for (const SurfacePoint *p = body[0].point; p < body[0].point + body[0].n; ++p) {
+    if (p->rank != rank || !surface_meet(body, p, body + 1, m->grid->smallest, &pair)) continue;
     const PetscReal gap = pair.gap - contact_reach_of(m->points, p->owner, pair.normal);
     if (!(PetscAbsReal(gap) < hair && pair.gap > 0)) continue;
     reach_over(m, k, p->owner, &pair);
     if (m->c->interfaces[k].contact == CONTACT_BONDED) /* holds what touches when it begins, or goes on to touch */
       contact_kept(m->points, p->owner, m->c->n_walls + k, contact_sides(m->c), 0)[KEPT_STATE] = CONTACT_STICKS;
   }
-  PetscCall(SurfaceClear(&first));
-  PetscCall(SurfaceClear(&second));
+  for (int i = 0; i < 2; ++i) PetscCall(SurfaceClear(body + i));
   PetscCall(PetscFree(bounds));
   PetscFunctionReturn(0);
 }
