@@ -68,6 +68,10 @@ falls 1e5
 says err.txt "of a cell deep in wall 'floor'"
 falls 1e7
 ! grep -q "of a cell deep" err.txt || fail "tells of a hundredth of a per cent"
+# A stage that is not explicit takes surfaces where they are, and what gives way goes on to do so.
+expect "explicit, then statics" 0 "$talus" run block.yaml --out follows --set materials.rubber.young=1e5 \
+  --set 'analysis={type: explicit, end: 0.4, step: 0.02, damping: 20}' --set 'stages=[{name: falls}, {name: rests, analysis: {type: static, steps: 1, damping: 0}}]'
+says err.txt "of a cell deep in wall 'floor'" "in the stages that follow, too"
 # A bar of two by two cells in space, pulled at its end at once: it swings between 0 and twice the static way, and loses
 # some energy between points and grid, but makes none.
 cat >pulled.yaml <<'END'

@@ -309,7 +309,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   PetscCall(WarnOfCrowd(m, diag));
   PetscCall(WarnOfMovedLoads(m, diag));
   PetscCall(WarnOfShear(m, diag));
-  warn_of_sunk(m, diag);
+  warn_of_sunk(m, PETSC_FALSE, diag);
   warn_of_walls_through(m, diag);
   PetscFunctionReturn(0);
 }

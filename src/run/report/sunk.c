@@ -3,7 +3,7 @@
 
 #define SUNK_ALLOWED 0.01 /* of a cell, where the run ends: by so much of a cell too much does the body give way */
 
-static void warn_of_partner(const Case *c, PetscInt k, PetscReal deep, Diag *diag)
+static void warn_of_partner(const Case *c, PetscInt k, PetscReal deep, PetscBool goes_on, Diag *diag)
 {
   const PetscBool wall = k < c->n_walls;
   AnalysisSpec stiffer = c->analysis;
@@ -13,8 +13,9 @@ static void warn_of_partner(const Case *c, PetscInt k, PetscReal deep, Diag *dia
   diag_warning(
     diag, path,
     "at the end material is %.2g of a cell deep in %s '%s': contact of explicit dynamics is about as soft as "
-    "a cell, and what is pressed there gives way by so much more",
-    (double)deep, wall ? "wall" : "interface", wall ? c->walls[k].name : c->interfaces[k - c->n_walls].name);
+    "a cell, and what is pressed there gives way by so much more%s",
+    (double)deep, wall ? "wall" : "interface", wall ? c->walls[k].name : c->interfaces[k - c->n_walls].name,
+    goes_on ? ", in the stages that follow, too" : "");
   diag_hint(
     diag,
     "`analysis: {contact_stiffness: %g}` leaves about %.2g of a cell of it, in %.1f times as many substeps; smaller "
@@ -23,12 +24,12 @@ static void warn_of_partner(const Case *c, PetscInt k, PetscReal deep, Diag *dia
     (double)(case_courant(&c->analysis) / case_courant(&stiffer)));
 }
 
-void warn_of_sunk(const Model *m, Diag *diag)
+void warn_of_sunk(const Model *m, PetscBool goes_on, Diag *diag)
 {
   const Contact *s = m->contact;
   if (m->c->analysis.type != ANALYSIS_EXPLICIT) return;
   for (PetscInt k = 0; s && k < s->n_partners; ++k) {
     const PetscReal deep = s->wall[k].deepest / m->grid->smallest;
-    if (deep > SUNK_ALLOWED) warn_of_partner(m->c, k, deep, diag);
+    if (deep > SUNK_ALLOWED) warn_of_partner(m->c, k, deep, goes_on, diag);
   }
 }

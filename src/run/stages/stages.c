@@ -1,6 +1,7 @@
 /* From one stage of a run to the next. */
 #include "base/text.h"
 #include "output/directory/run_dir_files.h"
+#include "run/report/sunk.h"
 #include "run/run_private.h"
 #include "run/watch/events.h"
 
@@ -114,6 +115,8 @@ PetscErrorCode RunNextStage(Run *r, Diag *diag)
 
   PetscFunctionBeginUser;
   r->starts[k] = r->model->time;
+  diag_of_stage(diag, r->stage, r->whole->stages[r->stage].name);
+  if (r->whole->stage_case[k]->analysis.type != ANALYSIS_EXPLICIT) warn_of_sunk(r->model, PETSC_TRUE, diag);
   run_begin_stage(r, k);
   diag_of_stage(diag, k, stage->name);
   PetscCall(ModelSucceed(r->c, diag, &r->model, &imbalance));
