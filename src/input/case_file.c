@@ -106,18 +106,38 @@ static PetscBool cells_share(const Case *c)
   return (PetscBool)(c->grid.kind == GRID_BOX && several && (c->basis.by_default || basis->nodes == BASIS_OF_CELLS));
 }
 
+/* Are any of the stages an analysis of one of these types, NULL behind the last? */
+static PetscBool stages_have(const YamlNode *stages, const char *const *types)
+{
+  for (PetscInt k = 0; stages && stages->kind == YAML_SEQUENCE && k < stages->n; ++k) {
+    const YamlNode *type = yaml_find(yaml_find(stages->child[k], "analysis"), "type");
+    for (const char *const *one = types; type && type->kind == YAML_SCALAR && *one; ++one)
+      if (!strcmp(type->text, *one)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Does any of the stages seek something? Formulations are of all of them. */
+static PetscBool stages_seek(const YamlNode *stages)
+{
+  return stages_have(stages, (const char *const[]){"factor-of-safety", "limit-load", NULL});
+}
+
 /* What yields without a change of volume locks with displacements alone, and nothing fails: who asks
  * for a factor of safety or a limit load and names no formulation gets one that does not. With dilatancy Newton's
- * method loses its way in the mixed one long before anything fails (docs/decisions.md, 263). Stages have that of the
- * whole. */
+ * method loses its way in the mixed one long before anything fails (docs/decisions.md, 263), and explicit dynamics has
+ * none. Stages have that of the whole. */
 static PetscErrorCode ResolveFormulation(const YamlNode *root, const Case *whole, Case *c)
 {
   const Method *method = c->method ? method_find(c->method) : NULL;
   const PetscBool seeks = case_seeks(&c->analysis) || c->seeks;
+  const PetscBool runs_explicit = c->analysis.type == ANALYSIS_EXPLICIT ||
+                                  stages_have(yaml_find(root, "stages"), (const char *const[]){"explicit", NULL});
 
   PetscFunctionBeginUser;
   if (yaml_find(root, "formulation") || !seeks || !method || !method->takes_pressure) PetscFunctionReturn(0);
   const PetscBool shared = whole ? !strcmp(whole->formulation, "mean-dilatation") : case_dilates(c) && cells_share(c);
+  if (whole ? !case_is_mixed(whole) && !shared : !shared && runs_explicit) PetscFunctionReturn(0);
   PetscCall(PetscFree(c->formulation));
   PetscCall(PetscStrallocpy(shared ? "mean-dilatation" : "mixed", &c->formulation));
   if (shared && c->basis.by_default) c->basis.kind = method_basis(method, c);
@@ -133,18 +153,6 @@ static void resolve_equilibrium(const YamlNode *given, Case *c)
   const PetscBool due =
     case_is_static(&c->analysis) && case_has_stress(c) && !c->initial.run && method && !method->clouds;
   c->initial.equilibrium = due ? EQUILIBRIUM_DIRECT : EQUILIBRIUM_NONE;
-}
-
-/* Does any of the stages seek something? Formulations are of all of them. */
-static PetscBool stages_seek(const YamlNode *stages)
-{
-  for (PetscInt k = 0; stages && stages->kind == YAML_SEQUENCE && k < stages->n; ++k) {
-    const YamlNode *type = yaml_find(yaml_find(stages->child[k], "analysis"), "type");
-    if (type && type->kind == YAML_SCALAR &&
-        (!strcmp(type->text, "factor-of-safety") || !strcmp(type->text, "limit-load")))
-      return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
 }
 
 /* What is out of balance at the start of statics fades over all of it. */

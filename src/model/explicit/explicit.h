@@ -46,7 +46,7 @@ typedef struct Explicit {
   PetscReal *motion;     /* n_nodes x 2 dim: velocity at the end of the substep, and what points gain, m/s */
   PetscReal *springs;    /* with walls, n_nodes x 2: stiffness of the springs, N/m, and mass, kg */
   PetscReal *straining;  /* n_nodes x dim: the velocity that strains the points, m/s */
-  PetscBool as_strained; /* do points move by it, too, as those with gimp and splines must (explicit_way)? */
+  PetscBool as_strained; /* do points move by it, too (explicit_way)? */
   /* n_nodes: > 0 where points of some rank can come in the lap; then, in each substep, at nodes that carry neither
    * loads nor tracers */
   PetscReal *mark;
@@ -56,18 +56,20 @@ typedef struct Explicit {
   PetscReal *apart;           /* n_nodes x 3 dim: momentum and velocities meanwhile */
   PetscInt n_held;
   Held *held;
-  PetscBool moved;   /* do prescribed velocities change? */
-  PetscReal time;    /* at the start of the substep, s */
-  PetscReal step;    /* of the run's, s */
-  PetscReal dt;      /* of a substep, s: how long points move in it; 0: velocities alone are brought to `time` */
-  PetscReal before;  /* of the last one, s; 0: velocities are those of `time` */
-  PetscReal kick;    /* how long forces act in it, s: from the middle of the last one to that of this one */
-  PetscReal fade;    /* of velocities by damping meanwhile */
-  PetscBool slopes;  /* do points carry the gradient of their motion (transfer consistent)? */
-  PetscReal unseen;  /* share that they lose meanwhile of what nodes do not see of their motion, */
-  PetscReal follow;  /* and by which their gradient goes after that of the nodes */
-  PetscReal g[3];    /* gravity, m/s2 */
-  PetscInt substeps; /* in the lap; and all */
+  PetscBool moved;     /* do prescribed velocities change? */
+  PetscReal time;      /* at the start of the substep, s */
+  PetscReal step;      /* of the run's, s */
+  PetscReal dt;        /* of a substep, s: how long points move in it; 0: velocities alone are brought to `time` */
+  PetscReal before;    /* of the last one, s; 0: velocities are those of `time` */
+  PetscReal kick;      /* how long forces act in it, s: from the middle of the last one to that of this one */
+  PetscReal fade;      /* of velocities by damping meanwhile, */
+  PetscReal act;       /* and as if forces acted so long, s: damping takes of what they give, too; */
+  PetscReal fading[3]; /* energy that it takes of a point: m times these of v v, v g and g g, with g the gain */
+  PetscBool slopes;    /* do points carry the gradient of their motion (transfer consistent)? */
+  PetscReal unseen;    /* share that they lose meanwhile of what nodes do not see of their motion, */
+  PetscReal follow;    /* and by which their gradient goes after that of the nodes */
+  PetscReal g[3];      /* gravity, m/s2 */
+  PetscInt substeps;   /* in the lap; and all */
   PetscInt taken;
   PetscBool begins, ends; /* is the substep the lap's first, its last? */
   PetscReal critical;     /* substep, s, when it was last asked for, */
@@ -144,7 +146,7 @@ PetscErrorCode NodesCarry(Model *model, Explicit *e);
 void nodes_forget(const Model *model, Explicit *e);
 
 /* The velocity of a node that points, tracers and loads move by. What has other ways than its strain tells is pulled
- * apart by tension, motion that nodes do not see first (docs/theory.md, section 64); cells have none so smooth. */
+ * apart by tension, and shaken by walls, motion that nodes do not see first (docs/theory.md, section 64). */
 static inline const PetscReal *explicit_way(const Explicit *e, PetscInt dim, PetscInt node)
 {
   return e->as_strained ? e->straining + node * dim : e->motion + node * 2 * dim;

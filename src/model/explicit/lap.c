@@ -83,7 +83,7 @@ PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
   e->smooth = is_smooth(m);
   e->shared = m->formulation->cells;
   PetscCall(SupportCreate(&e->near.support));
-  e->as_strained = m->space->basis->nodes != BASIS_OF_CELLS;
+  e->as_strained = m->contact || m->space->basis->nodes != BASIS_OF_CELLS;
   e->slopes = m->points->components[POINT_SLOPE] > 0;
   if (e->box) lattice_of(m, &e->lattice);
   /* whole registers are read from the last node on */

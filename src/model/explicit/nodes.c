@@ -125,7 +125,7 @@ PetscErrorCode NodesMove(Model *m, Explicit *e)
     PetscReal *v = e->motion + node * 2 * dim;
     for (PetscInt d = 0; d < dim; ++d) {
       const PetscReal load = mass * e->g[d] + (e->loaded ? m->nodes->external[node * dim + d] : 0);
-      const PetscReal gain = e->kick * inverse * (s[1 + dim + d] + load), kept = (1 - e->fade) * inverse * s[1 + d];
+      const PetscReal gain = e->act * inverse * (s[1 + dim + d] + load), kept = (1 - e->fade) * inverse * s[1 + d];
       v[d] = kept + gain;
       v[dim + d] = gain;
     }
@@ -246,7 +246,7 @@ PetscErrorCode NodesCarry(Model *m, Explicit *e)
     const PetscInt node = e->active[k];
     for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
       n->v1[i] = e->motion[node * 2 * dim + d];
-      n->a1[i] = e->motion[node * 2 * dim + dim + d] / e->kick;
+      n->a1[i] = e->motion[node * 2 * dim + dim + d] / e->act;
       n->du[i] = e->dt * explicit_way(e, dim, node)[d];
     }
   }

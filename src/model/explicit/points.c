@@ -95,7 +95,7 @@ KERNEL void gain(const int dim, const Model *m, Explicit *e)
 {
   const Points *points = m->points;
   const PetscBool again = m->c->analysis.update == EXPLICIT_MUSL;
-  const PetscReal per_second = 1 / e->kick;
+  const PetscReal per_second = 1 / e->act, *fading = e->fading;
   PetscReal damped = 0;
   Sight s = {0};
   for (PetscInt p = 0; p < points->n; ++p) {
@@ -107,7 +107,7 @@ KERNEL void gain(const int dim, const Model *m, Explicit *e)
     for (PetscInt k = 0; k < s.nn; ++k)
       for (int d = 0; d < 2 * dim; ++d) felt[d] += s.N[k] * e->motion[s.node[k] * 2 * dim + d];
     for (int d = 0; d < dim; ++d) {
-      damped += 0.5 * mass * v[d] * v[d] * e->fade * (2 - e->fade);
+      damped += mass * (v[d] * (fading[0] * v[d] + fading[1] * gained[d]) + fading[2] * gained[d] * gained[d]);
       v[d] += gained[d] - e->fade * v[d];
       v[d] += e->unseen * (felt[d] - v[d]);
       a[d] = gained[d] * per_second;

@@ -9,6 +9,22 @@ static void refuse(PetscBool asked, const char *path, const char *what, Diag *di
   diag_hint(diag, "`type: dynamic` does");
 }
 
+/* A node that a corner of a body hardly reaches has next to no mass and all of its gradient. What yields gives way. */
+static void warn_of_usl(const Model *m, Diag *diag)
+{
+  const Case *c = m->c;
+  const Basis *basis = basis_find(c->basis.kind);
+  if (c->analysis.update != EXPLICIT_USL || !basis || basis->nodes != BASIS_OF_CELLS) return;
+  for (PetscInt i = 0; i < c->n_materials; ++i) {
+    const Law *law = law_find(c->materials[i].law);
+    if (!law || law->yields) return;
+  }
+  diag_warning(diag, "analysis.update",
+               "`usl` with the functions of cells makes energy from nothing where a body ends between the grid's "
+               "lines, or moves across them");
+  diag_hint(diag, "`update: musl`, or `basis: gimp`");
+}
+
 void explicit_check(const Model *m, Diag *diag)
 {
   const Case *c = m->c;
@@ -20,6 +36,7 @@ void explicit_check(const Model *m, Diag *diag)
          "transfers other than thesis and consistent", diag);
   if (transfer && transfer->slopes && c->analysis.update == EXPLICIT_USL)
     diag_error(diag, "analysis.update", "`usl` does not take transfer consistent: `musl` does");
+  warn_of_usl(m, diag);
   refuse(c->analysis.keep_velocity, "analysis.keep_velocity", "`keep_velocity`", diag);
   refuse(c->stabilisation.room, "stabilisation.room", "`room`", diag);
   refuse(c->basis.split > 0, "basis.gimp.split", "points that are split", diag);

@@ -156,17 +156,15 @@ static void move_of(const Model *m, const Explicit *e, const ContactPoint *c, Pe
     }
 }
 
-/* Work that sliding by s takes: of the mean of the force and of that which it leads to, since force and motion stand
- * half a substep apart; what is bonded or sticks does not slide, and what its springs have stored when it opens goes
- * the way of all springs. */
+/* Work that sliding by s takes: of the slip that the spring does not keep, against the force that it then has. What the
+ * spring takes it gives back, or has when contact opens: that goes the way of all springs. */
 static PetscReal sliding_work(const ContactPoint *c, const PetscReal s[3])
 {
-  PetscReal next[3], square = 0, work = 0;
-  for (int d = 0; d < 3; ++d) next[d] = c->now.shear[d] - c->law.along * s[d], square += next[d] * next[d];
+  PetscReal square = 0;
+  for (int d = 0; d < 3; ++d) square += PetscSqr(c->now.shear[d] - c->law.along * s[d]);
   const PetscReal most = contact_most(&c->law, c->now.pressure), size = PetscSqrtReal(square);
-  const PetscReal part = size > most ? most / size : 1;
-  for (int d = 0; d < 3; ++d) work -= 0.5 * (c->now.shear[d] + part * next[d]) * s[d];
-  return c->law.kind == CONTACT_FRICTION ? work : 0;
+  if (c->law.kind != CONTACT_FRICTION || !(size > most)) return 0;
+  return most * (size - most) / c->law.along;
 }
 
 /* What its law starts from in the next substep; after the last one of the run's step, the force itself. move: of

@@ -1,9 +1,24 @@
+#include "base/math/vector.h"
 #include "method/transfer/slopes.h"
 #include "method/transfer/transfer.h"
 #include "model/stage/stage_private.h"
 #include "grid/search/directory.h"
 #include "model/state/state.h"
 #include "model/state/state_private.h"
+
+/* Bodies of another run move as they did in it. */
+static void check_motion(const Case *c, const Case *from, Diag *diag)
+{
+  char path[64];
+  for (PetscInt b = 0; b < c->n_bodies; ++b) {
+    const BodySpec *body = &c->bodies[b];
+    const PetscBool moves = (PetscBool)(vector_dot(body->velocity, body->velocity) > 0);
+    if (body_comes(c, from, b) || (!moves && !(vector_dot(body->spin, body->spin) > 0))) continue;
+    snprintf(path, sizeof path, "bodies[%d].%s", (int)b, moves ? "velocity" : "spin");
+    diag_error(diag, path, "'%s' comes from the run of `initial` with the velocities that it has there", body->name);
+    diag_hint(diag, "leave out its `velocity` and `spin`");
+  }
+}
 
 /* What no state can be made of, by its name. */
 static PetscErrorCode CheckCases(const Model *m, const Case *from, PetscBool next, Diag *diag)
@@ -19,6 +34,7 @@ static PetscErrorCode CheckCases(const Model *m, const Case *from, PetscBool nex
     diag_error(diag, "formulation", "nodes of fem carry their pressures or have none: the state is one of `%s`",
                from->formulation);
   PetscCall(RenameCheck(c, from, next, diag));
+  if (!next) check_motion(c, from, diag);
   PetscFunctionReturn(0);
 }
 
@@ -161,6 +177,14 @@ static PetscBool takes_another_grid(const Model *m, PetscBool next, Diag *diag)
   return PETSC_FALSE;
 }
 
+/* Do points of that run move linearly where their body does? Nodes with lumped mass see them in the mean only. */
+static PetscBool moves_linearly(const Case *from)
+{
+  const PetscBool lumps = (PetscBool)(from->analysis.mass == MASS_LUMPED || from->stabilisation.mass > 0);
+  return (PetscBool)(transfer_find(from->analysis.transfer)->slopes &&
+                     (from->analysis.type == ANALYSIS_EXPLICIT || !lumps));
+}
+
 PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool next, Diag *diag, Imbalance *imbalance)
 {
   char reason[256] = "", other[256] = "";
@@ -180,7 +204,7 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
   PetscCall(ModelInitialise(m));
   if (!m->method->restores_grid && !m->method->clouds) PetscCall(DiscretisationMass(m->space)); /* of points taken */
   if (m->points->components[POINT_SLOPE] && !table_has(tables_find(tables, "points"), "slope"))
-    PetscCall(SlopesStart(m->space, transfer_find(from->analysis.transfer)->slopes));
+    PetscCall(SlopesStart(m->space, moves_linearly(from)));
   settle_stress(m);
   if (!next) stresses_check(m, diag);
   if (next) PetscCall(WallsCome(m, from, diag));

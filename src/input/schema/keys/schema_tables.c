@@ -29,7 +29,9 @@ static const SchemaWord unheld_words[] = {
 static const SchemaWord update_words[] = {
   {"musl", EXPLICIT_MUSL,
    "by the velocities that the points give the nodes after the step: quiet where points leave cells"},
-  {"usl", EXPLICIT_USL, "by the velocities of the balance of momentum: a third faster, noisy at nodes of little mass"},
+  {"usl", EXPLICIT_USL,
+   "by the velocities of the balance of momentum, in shorter substeps: for bodies along the grid's lines, since nodes "
+   "of little mass shake what they strain"},
   {NULL, 0, NULL},
 };
 static const SchemaWord linear_words[] = {
@@ -123,7 +125,7 @@ static const SchemaEntry analysis_entries[] = {
     "courant", NUMBER, NULL,
     "explicit: share of the critical step that is taken; within `step`, which the history and measures see, there are "
     "as many as that needs",
-    .note = "0.8; with `update: usl` 0.6", .bounded = PETSC_TRUE, .min = 0, .min_open = PETSC_TRUE, .max = 1,
+    .note = "0.8; with `update: usl` 0.3", .bounded = PETSC_TRUE, .min = 0, .min_open = PETSC_TRUE, .max = 1,
     AT(AnalysisSpec, courant)),
   KEY("update", WORD, NULL, "explicit: what strains the points", .words = update_words, .fallback = "musl",
       AT(AnalysisSpec, update)),
@@ -315,7 +317,7 @@ static const SchemaEntry initial_entries[] = {
       .note = "true with an initial stress", AT(InitialSpec, reset)),
   KEY(
     "run", FILE, NULL,
-    "or the stresses and places of another run in this directory, of the same bodies by their names: time, "
+    "or the stresses, places and velocities of another run in this directory, of the same bodies by their names: time, "
     "displacements and accounts begin anew. Points of mpm go onto any grid, walls and interfaces apart; fem needs the "
     "same one",
     AT(InitialSpec, run)),
@@ -336,7 +338,10 @@ static const SchemaEntry case_entries[] = {
   KEY("method", WORD_TEXT, NULL, "numerical method", .registry = (const void *const *)methods, REQUIRED,
       AT(Case, method)),
   KEY("formulation", WORD_TEXT, NULL, "unknowns of the equations", .registry = (const void *const *)formulations,
-      .fallback = "displacement", AT(Case, formulation)),
+      .fallback = "displacement",
+      .note = "displacement; where a factor of safety or a limit load is sought, in any of the stages, mixed, or "
+              "mean-dilatation with a dilatancy angle in whole cells; not mixed beside explicit stages",
+      AT(Case, formulation)),
   KEY("mixed", TABLE, NULL, "numbers of the mixed formulation", .table = &mixed, ALWAYS, AT(Case, mixed)),
   KEY("analysis", TABLE, NULL, "statics or dynamics, steps", .table = &analysis, REQUIRED, AT(Case, analysis)),
   KEY("initial", TABLE, NULL, "equilibrium before the first step", .table = &initial, ALWAYS, AT(Case, initial)),

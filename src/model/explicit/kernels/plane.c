@@ -55,10 +55,12 @@ KERNEL void fetch_motion(const Explicit *e, const Lattice *l, int32_t cell, Four
 }
 
 /* What the gradient that point p, the k-th, carries adds to the momentum of the nodes: m N G (x_I - x_p). */
-KERNEL void lean(const Lattice *l, const Points *points, PetscInt p, const Place *place, PetscInt k, const Four *weight,
-                 Four momentum[2])
+KERNEL void lean(const Lattice *l, const Points *points, PetscInt p, PetscReal ahead, const Place *place, PetscInt k,
+                 const Four *weight, Four momentum[2])
 {
-  const PetscReal *G = point_real(points, POINT_SLOPE, p), mass = points->real[POINT_MASS][p];
+  const PetscReal mass = points->real[POINT_MASS][p];
+  PetscReal G[4];
+  slope_at(2, point_real(points, POINT_SLOPE, p), ahead, G);
   const Four x = mass * l->size[0] * *weight * (1 - begin[0] - place->at[0][k]),
              y = mass * l->size[1] * *weight * (1 - begin[1] - place->at[1][k]);
   momentum[0] += G[0] * x + G[1] * y;
@@ -80,7 +82,7 @@ KERNEL void give(const PetscBool hoop, const Points *points, PetscInt first, Pet
     sum[0] += g->mass[k] * weight;
     sum[1] += g->momentum[2 * k] * weight;
     sum[2] += g->momentum[2 * k + 1] * weight;
-    if (e->slopes) lean(l, points, first + k, place, k, &weight, sum + 1);
+    if (e->slopes) lean(l, points, first + k, -explicit_half(e), place, k, &weight, sum + 1);
     sum[3] += g->tau[0][k] * dx + g->tau[3][k] * dy;
     sum[4] += g->tau[3][k] * dx + g->tau[1][k] * dy;
     if (hoop) sum[3] += g->tau[2][k] / *point_real(points, POINT_X, first + k) * weight;
@@ -144,11 +146,11 @@ void plane_gain(const Model *m, Explicit *e)
       along(&place, k, N);
       const Four weight = N[0] * N[1];
       for (int d = 0; d < 2; ++d) sum[d] += momentum[2 * k + d] * weight;
-      if (e->slopes) lean(&e->lattice, points, first + k, &place, k, &weight, sum);
+      if (e->slopes) lean(&e->lattice, points, first + k, explicit_half(e), &place, k, &weight, sum);
     }
   }
   if (again) bring(2, &e->lattice, cell, sum, e->straining);
-  e->damped += 0.5 * e->fade * (2 - e->fade) * ((damped[0] + damped[1]) + (damped[2] + damped[3]));
+  e->damped += (damped[0] + damped[1]) + (damped[2] + damped[3]);
 }
 
 /* What strains the points of a cell: gradient = constant + bilinear {y, y, x, x}, of rows xx yx xy yy. */
@@ -161,8 +163,12 @@ KERNEL void fetch_flow(const Explicit *e, const Lattice *l, int32_t cell, Flow *
 {
   const Four per_length = {l->per_length[0], l->per_length[0], l->per_length[1], l->per_length[1]};
   const PetscReal *v[4];
-  fetch_motion(e, l, cell, f->motion);
-  for (int k = 0; k < 4; ++k) v[k] = e->straining + l->number[cell + l->corner[k]] * 2;
+  for (int k = 0; k < 4; ++k) {
+    const PetscInt node = l->number[cell + l->corner[k]];
+    const PetscReal *way = explicit_way(e, 2, node);
+    f->motion[k] = (Four){way[0], way[1], way[0], way[1]};
+    v[k] = e->straining + node * 2;
+  }
   for (int d = 0; d < 2; ++d) {
     const PetscReal twist = (v[3][d] - v[2][d]) - (v[1][d] - v[0][d]);
     f->constant[d] = v[1][d] - v[0][d];

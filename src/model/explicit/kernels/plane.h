@@ -44,11 +44,11 @@ KERNEL void speed_up(const Explicit *e, const Four *felt, const Four *mass, Pets
   take(v, left, &old);
   Four now = kept * old + gained;
   if (e->slopes) now += e->unseen * (seen - now);
-  *damped += *mass * (old * old);
+  *damped += *mass * (old * (e->fading[0] * old + e->fading[1] * gained) + e->fading[2] * gained * gained);
   put(&now, left, v);
   FOUR(momentum) = *mass * now;
   if (!e->ends) return;
-  const Four acceleration = gained * (1 / e->kick);
+  const Four acceleration = gained * (1 / e->act);
   put(&acceleration, left, a);
 }
 

@@ -273,7 +273,7 @@ void smooth_gain(const Model *m, Explicit *e)
     }
   }
   if (w.cell >= 0) bring(2, w.node, w.sum, e->straining);
-  e->damped += 0.5 * e->fade * (2 - e->fade) * ((damped[0] + damped[1]) + (damped[2] + damped[3]));
+  e->damped += (damped[0] + damped[1]) + (damped[2] + damped[3]);
 }
 
 /* Of the window: the velocity, twice. */

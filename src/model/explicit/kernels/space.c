@@ -89,10 +89,12 @@ KERNEL void share(const Lattice *l, const Shapes *s, PetscInt k, PetscInt end, c
 
 /* Momentum of a point with the gradient that it carries: m (v + G (x_I - x_p)) at the cell's first node, and what a
  * side along each axis adds. at: the first component of momentum in `value`. */
-KERNEL void lean(const Lattice *l, const Shapes *s, const Points *points, PetscInt p, PetscInt k, int at,
-                 const Four *value, Four corner[8])
+KERNEL void lean(const Lattice *l, const Shapes *s, const Points *points, PetscInt p, PetscReal ahead, PetscInt k,
+                 int at, const Four *value, Four corner[8])
 {
-  const PetscReal *G = point_real(points, POINT_SLOPE, p), mass = points->real[POINT_MASS][p];
+  const PetscReal mass = points->real[POINT_MASS][p];
+  PetscReal G[9];
+  slope_at(3, point_real(points, POINT_SLOPE, p), ahead, G);
   Four rise[3], start = *value;
   for (int d = 0; d < 3; ++d) {
     rise[d] = (Four){0};
@@ -108,13 +110,13 @@ KERNEL void lean(const Lattice *l, const Shapes *s, const Points *points, PetscI
 }
 
 /* As `share`, of points that carry gradients; p: the one that is the batch's first. */
-KERNEL void share_leaning(const Lattice *l, const Shapes *s, const Points *points, PetscInt p, PetscInt k, PetscInt end,
-                          int at, const Four *value, int width, PetscReal *nodes)
+KERNEL void share_leaning(const Lattice *l, const Shapes *s, const Points *points, PetscInt p, PetscReal ahead,
+                          PetscInt k, PetscInt end, int at, const Four *value, int width, PetscReal *nodes)
 {
   Four sum[8] = {{0}}, corner[8];
   const int32_t cell = s->place.cell[k];
   for (; k < end; ++k) {
-    lean(l, s, points, p + k, k, at, &value[k], corner);
+    lean(l, s, points, p + k, ahead, k, at, &value[k], corner);
 #pragma GCC unroll 8
     for (int i = 0; i < 8; ++i) sum[i] += s->N[i][k] * corner[i];
   }
@@ -150,11 +152,12 @@ KERNEL void push(const Lattice *l, const Shapes *s, PetscInt k, PetscInt end, co
 KERNEL void give(const Points *points, PetscInt first, PetscInt n, Shapes *s, Given *g, Explicit *e)
 {
   const PetscReal *v = point_real(points, POINT_V, first), *mass = points->real[POINT_MASS] + first;
+  const PetscReal half = explicit_half(e);
   locate(&e->lattice, n, point_real(points, POINT_X, first), s);
   for (PetscInt k = 0; k < n; ++k) g->inertia[k] = mass[k] * (Four){1, v[3 * k], v[3 * k + 1], v[3 * k + 2]};
   for (PetscInt k = 0, end; k < n; k = end) {
     end = run_of(&s->place, k, n);
-    if (e->slopes) share_leaning(&e->lattice, s, points, first, k, end, 1, g->inertia, 7, e->sum);
+    if (e->slopes) share_leaning(&e->lattice, s, points, first, -half, k, end, 1, g->inertia, 7, e->sum);
     else share(&e->lattice, s, k, end, g->inertia, 7, e->sum);
     push(&e->lattice, s, k, end, g, e->sum + 4);
   }
@@ -189,26 +192,28 @@ void space_gather(const Model *m, Explicit *e)
   }
 }
 
-/* One point gains velocity; its momentum, and twice its kinetic energy before. */
+/* One point gains velocity; its momentum, and what damping takes of its energy. */
 KERNEL PetscReal speed_up(const Points *points, PetscInt p, const Explicit *e, const Four *gained, const Four *seen,
                           Four *momentum)
 {
-  PetscReal *v = point_real(points, POINT_V, p), before = 0;
+  PetscReal *v = point_real(points, POINT_V, p), damped = 0;
   const PetscReal mass = points->real[POINT_MASS][p], kept = 1 - e->fade;
   for (int d = 0; d < 3; ++d) {
-    before += v[d] * v[d];
-    v[d] = kept * v[d] + (*gained)[d];
+    const PetscReal gain = (*gained)[d];
+    damped += v[d] * (e->fading[0] * v[d] + e->fading[1] * gain) + e->fading[2] * gain * gain;
+    v[d] = kept * v[d] + gain;
     if (e->slopes) v[d] += e->unseen * ((*seen)[d] - v[d]);
-    if (e->ends) point_real(points, POINT_A, p)[d] = (*gained)[d] * (1 / e->kick);
+    if (e->ends) point_real(points, POINT_A, p)[d] = gain * (1 / e->act);
   }
   *momentum = mass * (Four){v[0], v[1], v[2], 0};
-  return mass * before;
+  return mass * damped;
 }
 
 void space_gain(const Model *m, Explicit *e)
 {
   const Points *points = m->points;
   const PetscBool again = m->c->analysis.update == EXPLICIT_MUSL;
+  const PetscReal half = explicit_half(e);
   Four motion[8], flow[8] = {{0}}, gained, seen, momentum[LAW_BATCH];
   PetscReal damped = 0;
   Shapes s;
@@ -224,11 +229,11 @@ void space_gain(const Model *m, Explicit *e)
         mean(&s, i, flow, &seen);
         damped += speed_up(points, first + i, e, &gained, &seen, &momentum[i]);
       }
-      if (again && e->slopes) share_leaning(&e->lattice, &s, points, first, k, end, 0, momentum, 3, e->straining);
+      if (again && e->slopes) share_leaning(&e->lattice, &s, points, first, half, k, end, 0, momentum, 3, e->straining);
       else if (again) share(&e->lattice, &s, k, end, momentum, 3, e->straining);
     }
   }
-  e->damped += 0.5 * e->fade * (2 - e->fade) * damped;
+  e->damped += damped;
 }
 
 /* Of a batch: dF - 1 column by column, and by how much points move. */
@@ -240,8 +245,9 @@ KERNEL void flow_past(const Explicit *e, const Shapes *s, PetscInt k, PetscInt e
 {
   const Lattice *l = &e->lattice;
   Four motion[8], v[8], rise[3][4];
-  fetch(l, s->place.cell[k], 6, e->motion, motion);
   fetch(l, s->place.cell[k], 3, e->straining, v);
+  if (!e->as_strained) fetch(l, s->place.cell[k], 6, e->motion, motion);
+  const Four *way = e->as_strained ? v : motion;
 #pragma GCC unroll 3
   for (int d = 0; d < 3; ++d)
 #pragma GCC unroll 4
@@ -252,7 +258,7 @@ KERNEL void flow_past(const Explicit *e, const Shapes *s, PetscInt k, PetscInt e
     for (int d = 0; d < 3; ++d)
       strain->column[d][k] = (s->side[d][0][k] * rise[d][0] + s->side[d][1][k] * rise[d][1]) +
                              (s->side[d][2][k] * rise[d][2] + s->side[d][3][k] * rise[d][3]);
-    mean(s, k, motion, &strain->move[k]);
+    mean(s, k, way, &strain->move[k]);
   }
 }
 
