@@ -181,6 +181,12 @@ typedef struct Model {
   Balance balance;
   /* steps halved, Newton iterations (those of all tries), since the start */
   PetscInt cuts, total_iterations;
+  /* of statics: the first and the last accepted step whose equilibrium is one that nothing stays in, s, and in how many
+   * ways at most; 0: none was seen */
+  struct {
+    PetscInt ways;
+    PetscReal first, last;
+  } unstable;
   Tries tries; /* since the start */
   Softening limit;
   Strength strength;

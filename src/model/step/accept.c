@@ -119,6 +119,17 @@ static void note_mechanism(Model *m, PetscReal sign, PetscReal dt)
     }
 }
 
+/* A force that is raised beyond what a column bears finds it straight, if the step leads past the place where it begins
+ * to bend. */
+static void note_unstable(Model *m, const NewtonReport *newton)
+{
+  if (m->c->analysis.type != ANALYSIS_STATIC) return;
+  if (newton->negative <= 0) return;
+  if (!m->unstable.ways) m->unstable.first = m->time;
+  m->unstable.last = m->time;
+  m->unstable.ways = PetscMax(m->unstable.ways, newton->negative);
+}
+
 PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepReport *report)
 {
   PetscLogDouble clock;
@@ -136,6 +147,7 @@ PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepRepor
   PetscCall(EnergyClose(m, energy));
   PetscCall(OutsideAdd(m, report));
   PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
+  note_unstable(m, &report->newton);
   report->outcome = STEP_ACCEPTED;
   report->dt = dt;
   PetscFunctionReturn(0);

@@ -259,6 +259,7 @@ static PetscErrorCode Iterate(Newton *n, NewtonReport *report, SNESConvergedReas
   }
   newton_turn(n->problem, n->problem->force);
   report->converged = *reason > 0;
+  report->negative = n->negative;
   n->idle = report->converged && report->iterations == 0;
   report->interrupted = *reason == SNES_DIVERGED_FUNCTION_COUNT;
   PetscFunctionReturn(0);
@@ -293,7 +294,7 @@ static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonRe
   newton_rest_without_unknowns(p);
   n->before = n->last = 0;
   n->search.enough = p->stiff ? ENOUGH_STIFF : ENOUGH;
-  n->changes = n->changed = n->rescues = 0;
+  n->changes = n->changed = n->rescues = n->negative = 0;
   PetscCall(EliminationBegin(&n->elimination, p));
   PetscCall(UpdateSaddle(n));
   PetscCall(UpdateProjection(n));

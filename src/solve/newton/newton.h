@@ -79,6 +79,9 @@ typedef struct {
   const char *reason;  /* why it stopped, in words */
   LawStatus status;
   PetscInt bad_point; /* local, of that status; -1 */
+  /* ways in which the last tangent that was factorised as a symmetric one is negative: an equilibrium in which nothing
+   * stays, if there are any; 0 where nobody knows */
+  PetscInt negative;
 } NewtonReport;
 
 typedef struct Newton Newton;

@@ -35,6 +35,7 @@ struct Newton {
   PetscInt failures; /* of the iterative solver, not yet forgiven */
   PetscInt since;    /* steps since the last of them */
   PetscInt rescues;  /* solves of this step that a factorisation ended */
+  PetscInt negative; /* NewtonReport.negative */
   PetscBool retry;   /* this try takes the direct solver */
   PetscBool calm;    /* did the first iteration of the last solve leave next to nothing (newton_fell)? */
   PetscBool idle;    /* was the last first guess the solution? */

@@ -16,6 +16,24 @@ PetscErrorCode NewtonReset(Newton *n)
   PetscFunctionReturn(0);
 }
 
+/* Of displacements alone: pressures make pivots negative that mean nothing. Walls push, and do not make any. */
+static PetscErrorCode CountNegative(Newton *n, KSP ksp)
+{
+  PetscBool symmetric;
+  Mat factor;
+  PC pc;
+
+  PetscFunctionBeginUser;
+  n->negative = 0;
+  if (!n->direct || n->problem->pressure) PetscFunctionReturn(0);
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCCHOLESKY, &symmetric));
+  if (!symmetric) PetscFunctionReturn(0);
+  PetscCall(PCFactorGetMatrix(pc, &factor));
+  PetscCall(MatMumpsGetInfog(factor, 12, &n->negative));
+  PetscFunctionReturn(0);
+}
+
 /* The preconditioner's set-up, factorisations too, belongs to the solve. */
 static PetscErrorCode LinearSolved(KSP ksp, Vec b, Vec x, void *context)
 {
@@ -26,6 +44,7 @@ static PetscErrorCode LinearSolved(KSP ksp, Vec b, Vec x, void *context)
   (void)b, (void)x;
   PetscFunctionBeginUser;
   PetscCall(KSPGetConvergedReason(ksp, &reason));
+  PetscCall(CountNegative(n, ksp));
   n->rescues += !n->direct && reason == KSP_CONVERGED_ITS; /* blocks_ksp.c */
   PetscCall(PetscTime(&end));
   n->t_linear += end - n->solving;
