@@ -290,6 +290,7 @@ static void check_gone(const Case *c, Diag *diag)
     if (!c->loads[k].on.body || !c->bodies[case_body(c, c->loads[k].on.body)].absent) continue;
     snprintf(on, sizeof on, "%s.on.body", case_load_path(c, k, path));
     diag_error(diag, on, "the load acts on '%s', which is not there", c->loads[k].on.body);
+    diag_hint(diag, "give it in the stage that brings '%s'", c->loads[k].on.body);
   }
 }
 

@@ -1,5 +1,5 @@
 /* Loads that the material carries, through stages that change some and drop others. Their carriers know the places
- * that the load had in the undeformed body, and no other: what is new has none. */
+ * that the load had in the undeformed body, and no other: what is new has none, but on a body that comes with it. */
 #include <string.h>
 #include "model/stage/stage_private.h"
 
@@ -81,16 +81,24 @@ static PetscInt largest_of(const LoadSpec *load)
 
 static PetscBool is_zero(const LoadSpec *load) { return (PetscBool)(load->value[largest_of(load)] == 0); }
 
-static void check_load(const Case *c, PetscInt k, const LoadSpec *before, Diag *diag)
+/* Does it begin with the body that it acts on? */
+static PetscBool comes_with_body(const Case *c, const Case *from, const LoadSpec *load)
+{
+  for (PetscInt b = 0; load->on.body && b < c->n_bodies; ++b)
+    if (!strcmp(c->bodies[b].name, load->on.body)) return body_comes(c, from, b);
+  return PETSC_FALSE;
+}
+
+static void check_load(const Case *c, const Case *from, PetscInt k, const LoadSpec *before, Diag *diag)
 {
   const LoadSpec *load = c->loads + k;
   char path[64], key[96];
   case_load_path(c, k, path);
-  if (!before) {
+  if (!before && !comes_with_body(c, from, load)) {
     diag_error(diag, path,
                "a load that the material carries can begin only with the undeformed body, in the first stage");
     diag_hint(diag, "give it there, with an amplitude that is 0 until it comes");
-  } else if (load->kind != LOAD_POINT && is_zero(before) && !is_zero(load)) {
+  } else if (before && load->kind != LOAD_POINT && is_zero(before) && !is_zero(load)) {
     snprintf(key, sizeof key, "%s.value", path);
     diag_error(diag, key,
                "it was 0 before, and the carriers of the load know no more of the surface that they stand for");
@@ -106,7 +114,7 @@ PetscErrorCode LoadsCheck(const Case *c, const Case *from, PetscBool next, Diag 
   PetscCall(PetscMalloc2(from->n_loads, &now, c->n_loads, &was));
   map_loads(c, from, now, was);
   for (PetscInt k = 0; k < c->n_loads; ++k)
-    if (is_carried(c, c->loads + k)) check_load(c, k, next && was[k] >= 0 ? from->loads + was[k] : NULL, diag);
+    if (is_carried(c, c->loads + k)) check_load(c, from, k, next && was[k] >= 0 ? from->loads + was[k] : NULL, diag);
   PetscCall(PetscFree2(now, was));
   PetscFunctionReturn(0);
 }
@@ -122,10 +130,39 @@ static void change_force(const LoadSpec *load, const LoadSpec *before, PetscInt 
                                            : (load->kind == LOAD_POINT ? 1 : area) * load->value[i];
 }
 
+static PetscErrorCode CopyAll(const Points *from, Points *to)
+{
+  PetscBool *take;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(from->n, &take));
+  for (PetscInt p = 0; p < from->n; ++p) take[p] = PETSC_TRUE;
+  PetscCall(PointsCopy(from, take, to));
+  PetscCall(PetscFree(take));
+  PetscFunctionReturn(0);
+}
+
+/* Carriers of loads that begin with their body are those that the body was drawn with: the others go. */
+static PetscErrorCode PutAside(Model *m, const PetscInt *was, Points **begun)
+{
+  Points *carriers = m->loads->carriers;
+  PetscBool *take;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(carriers->n, &take));
+  for (PetscInt p = 0; p < carriers->n; ++p) take[p] = (PetscBool)(was[carriers->body[p]] < 0);
+  PetscCall(PointsCreate(m->dim, 0, 0, begun));
+  PetscCall(PetscArraycpy((*begun)->components, carriers->components, POINT_N_REAL));
+  PetscCall(PointsCopy(carriers, take, *begun));
+  PetscCall(PetscFree(take));
+  carriers->n = 0;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode TakeCarriers(Model *m, const Tables *tables, const Case *from, char reason[256])
 {
   const Case *c = m->c;
-  Points *carriers = m->loads->carriers;
+  Points *carriers = m->loads->carriers, *begun;
   PetscInt *now, *was;
   PetscBool any = PETSC_FALSE;
 
@@ -135,9 +172,13 @@ PetscErrorCode TakeCarriers(Model *m, const Tables *tables, const Case *from, ch
   PetscCall(PetscMalloc2(from->n_loads, &now, c->n_loads, &was));
   map_loads(c, from, now, was);
   const PointsChange change = {.n_bodies = from->n_loads, .n_materials = PetscMax(1, from->n_materials), .body = now};
+  PetscCall(PutAside(m, was, &begun));
   PetscCall(PointsTake(carriers, m->grid, tables_find(tables, "carriers"), &change, reason));
+  if (!reason[0]) PetscCall(CopyAll(begun, carriers));
+  PetscCall(PointsDestroy(&begun));
   for (PetscInt p = 0; p < carriers->n && !reason[0]; ++p) {
     const PetscInt k = carriers->body[p];
+    if (was[k] < 0) continue;
     const LoadSpec *before = from->loads + was[k];
     PetscReal *force = point_real(carriers, POINT_FORCE, p);
     if (!same_numbers(c->loads[k].value, before->value, 3)) change_force(c->loads + k, before, m->dim, force);

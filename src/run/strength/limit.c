@@ -190,17 +190,23 @@ PetscErrorCode LimitEnd(const LimitRun *s, Model *m, RunDir *dir)
 {
   const LimitSpec *spec = &m->c->analysis.limit;
   const LimitOutcome outcome = (LimitOutcome)s->outcome;
+  const PetscBool found = (PetscBool)(outcome == LIMIT_HOLDS || outcome == LIMIT_FALLS || outcome == LIMIT_FLOWS);
+  const char *what = found ? "limit load" : "largest load that was reached";
 
   PetscFunctionBeginUser;
   m->raised.value = largest_load(s);
   PetscCall(TellLoad(s, dir));
   PetscCall(RunDirLog(dir, "by energy = %.1f %% of the load's last work was stored", 100 * (double)share_stored(s)));
-  if (outcome != LIMIT_HOLDS && outcome != LIMIT_FALLS && outcome != LIMIT_FLOWS)
+  if (!found && m->raised.value > 0)
     PetscCall(RunDirLog(dir, "warning = no limit was found: the load is the largest that was reached"));
+  else if (!found)
+    PetscCall(RunDirLog(dir,
+                        "warning = no limit was found: with a first increment of %g nothing stands, or the search "
+                        "lost its way at once (analysis.limit.step)",
+                        (double)spec->step));
   if (case_raises_displacement(m->c))
-    PetscCall(
-      RunDirLog(dir, "limit load = %.6g N along the displacement of '%s'", (double)m->raised.value, spec->raise));
-  else PetscCall(RunDirLog(dir, "limit load = %.6g times '%s'", (double)m->raised.value, spec->raise));
+    PetscCall(RunDirLog(dir, "%s = %.6g N along the displacement of '%s'", what, (double)m->raised.value, spec->raise));
+  else PetscCall(RunDirLog(dir, "%s = %.6g times '%s'", what, (double)m->raised.value, spec->raise));
   PetscFunctionReturn(0);
 }
 
