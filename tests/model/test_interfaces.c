@@ -243,7 +243,9 @@ static void test_collides(void **state)
   (void)state;
   EACH_OF (k, pairs) {
     const PetscReal wall = rebound(&pairs[k], PETSC_TRUE), bar = rebound(&pairs[k], PETSC_FALSE);
-    CHECK_CLOSE(bar, wall, 1e-3 * PetscAbsReal(wall));
+    /* places that go with what strains leave a wall and a like body 0.2 % apart (docs/theory.md, section 64) */
+    const PetscBool apart = (PetscBool)(is_explicit(&pairs[k]) && !strcmp(pairs[k].basis, "cell"));
+    CHECK_CLOSE(bar, wall, (apart ? 2.5e-3 : 1e-3) * PetscAbsReal(wall));
     CHECK(bar < -80, "it leaves with %g kg m/s of 100", (double)bar);
   }
 }

@@ -43,11 +43,11 @@
 #define HIGHER 1.01 /* a penalty that could rise by less has risen: moduli that are alike differ by round-off */
 
 /* Of what is bonded more points ask than nodes can follow: what they cannot have stays as a slip, and from step to step
- * forces of those points grow against each other. They are none to the nodes until points have moved, and then the
- * midpoint rule takes nothing of the energy that they make: so none of them goes on. */
+ * forces of those points grow against each other. They are none to the nodes until points have moved, and then neither
+ * statics nor the midpoint rule takes anything of the energy that they make: so none of them goes on. */
 static PetscBool begins_anew(const Contact *s, const ContactPoint *c)
 {
-  return (PetscBool)(c->law.kind == CONTACT_BONDED && s->share.moves && !s->share.inertia);
+  return (PetscBool)(c->law.kind == CONTACT_BONDED && (!s->share.moves || !s->share.inertia));
 }
 
 /* Those of the last step, and as much more or less as the gap that it left takes away: of a stiff body that
