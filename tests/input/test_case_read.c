@@ -351,15 +351,19 @@ static void RoundTripOddValues(void **state)
   CaseDestroy(&second);
 }
 
-/* Anchors and aliases, other line ends, a byte order mark: all plain YAML. */
+/* Anchors and aliases, other line ends, a byte order mark: all plain YAML; and `on` as YAML 1.1 writes it. */
 static void YamlForms(void **state)
 {
   const char alias[] = PLAIN "boundary:\n  - {on: &foot {y: 0}, fix: [y]}\n  - {on: *foot, fix: [x]}\n";
+  const char on[] = PLAIN "boundary:\n  - true: {y: 0}\n    fix: [y]\n";
   const char bom[] = "\xef\xbb\xbf" PLAIN;
   char crlf[2000], *out = crlf;
   Case *c = read_good(alias);
   (void)state;
   assert_true(c->boundary[1].on.has[1]);
+  CaseDestroy(&c);
+  c = read_good(on);
+  assert_true(c->boundary[0].on.has[1]);
   CaseDestroy(&c);
   c = read_good(bom);
   CaseDestroy(&c);

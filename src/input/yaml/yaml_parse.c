@@ -125,6 +125,21 @@ static PetscErrorCode Attach(Builder *b, YamlNode *node)
   PetscFunctionReturn(0);
 }
 
+/* Programs that speak YAML 1.1, Python's yaml among them, read the key `on` as true and write it so. Where users give
+ * names one may be `true`. */
+static PetscErrorCode TakeOn(const YamlNode *mapping, YamlNode *key)
+{
+  static const char *const named[] = {"materials", "measures", "parameters", "petsc"};
+
+  PetscFunctionBeginUser;
+  if (!key->plain || strcmp(key->text, "true")) PetscFunctionReturn(0);
+  for (size_t k = 0; mapping->key && k < sizeof named / sizeof *named; ++k)
+    if (!strcmp(mapping->key, named[k])) PetscFunctionReturn(0);
+  PetscCall(PetscFree(key->text));
+  PetscCall(PetscStrallocpy("on", &key->text));
+  PetscFunctionReturn(0);
+}
+
 static PetscBool wants_key(const Builder *b) { return b->open && b->open->kind == YAML_MAPPING && !b->pending_key; }
 
 static PetscErrorCode TakeScalar(Builder *b, struct fy_event *event)
@@ -152,6 +167,7 @@ static PetscErrorCode TakeScalar(Builder *b, struct fy_event *event)
       fail(b, node, "merge keys (<<) are not supported");
       diag_hint(b->diag, "write the keys out: an alias stands for a whole value");
     }
+    PetscCall(TakeOn(b->open, node));
     check_twice(b, node);
     PetscFunctionReturn(0);
   }
