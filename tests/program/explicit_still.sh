@@ -76,10 +76,10 @@ expect "spin" 0 "$talus" run spin.yaml --out spin
 awk -F, '$3 == 1 { before = $5; energy = $4 } $3 == 2 && before - $5 > 0.03 * energy { bad = 1; print }
   END { exit bad || NR < 60 }' spin/history.csv >out.txt || fail "spin is made"
 
-# Sliding takes energy and gives none back: what sticks has it in springs.
+# Sliding takes all of the 174.4 J of motion but what is lost, and gives none back: what sticks has it in springs.
 expect "slides" 0 "$talus" run rest.yaml --out slides --set stages=null --set 'bodies[0].velocity=[1.5, 0]' \
   --set 'analysis={type: explicit, end: 0.4, step: 0.005}'
-awk -F, 'NR > 2 && $4 < last - 1e-12 { bad = 1; print } NR > 1 { last = $4 } END { exit bad || !(last > 5) }' \
+awk -F, 'NR > 2 && $4 < last - 1e-12 { bad = 1; print } NR > 1 { last = $4 } END { exit bad || !(last > 165 && last < 174.4) }' \
   slides/history.csv >out.txt || fail "friction gives energy back"
 
 # What strains by nodes of little mass shakes there, and is told.
