@@ -170,7 +170,8 @@ void nodes_hold(Model *m, Explicit *e)
   prescribe(m, e);
   for (const Held *h = e->held; h < e->held + e->n_held; ++h) {
     PetscReal *v = e->motion + h->node * 2 * dim, change[3];
-    const PetscReal mass = e->sum[h->node * e->width], impulse = mass * hold(m, h, v, change);
+    const PetscReal mass = e->sum[h->node * e->width] * e->kick / e->act; /* for the force that it takes */
+    const PetscReal impulse = mass * hold(m, h, v, change);
     for (PetscInt d = 0; d < dim; ++d) v[dim + d] += change[d];
     if (h->node >= m->grid->n_owned) continue;
     for (PetscInt d = 0; d < dim; ++d) m->nodes->reaction[h->node * dim + d] += mass * change[d] / e->step;

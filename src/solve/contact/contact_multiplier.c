@@ -47,7 +47,7 @@
  * statics nor the midpoint rule takes anything of the energy that they make: so none of them goes on. */
 static PetscBool begins_anew(const Contact *s, const ContactPoint *c)
 {
-  return (PetscBool)(c->law.kind == CONTACT_BONDED && (!s->share.moves || !s->share.inertia));
+  return (PetscBool)(c->law.kind == CONTACT_BONDED && (s->share.moves ? !s->share.inertia : s->share.resets));
 }
 
 /* Those of the last step, and as much more or less as the gap that it left takes away: of a stiff body that
