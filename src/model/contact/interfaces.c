@@ -7,8 +7,12 @@
 /* Of its reach: a part of a body that reaches deeper into another body at the start is a mistake; what
  * reaches less was made to fit. */
 #define THROUGH 0.1
-#define CLOSES 0.1       /* of a cell: a wider gap is told of (stage/gaps.c) */
-#define HAIR 1e-4        /* of a cell: a gap within it is one of the digits in which places are written */
+#define SLIVER 0.02 /* of a cell: and of what is thinner */
+#define CLOSES 0.1  /* of a cell: a wider gap is told of (stage/gaps.c) */
+#define HAIR 1e-4   /* of a cell: a gap within it is one of the digits in which places are written */
+/* surfaces that are fitted have other normals, for which they do not quite fit */
+#define FITTINGS 8
+#define FITS 1e-9        /* of a cell */
 #define MADE_TO_FIT 0.35 /* of the size of a point: a gap within it is one between polygons */
 
 static void check_method(const Model *m, Diag *diag)
@@ -95,24 +99,29 @@ static void reach_over(Model *m, PetscInt k, PetscInt p, const SurfacePair *pair
 
 /* Surfaces that were made to fit do so but for their polygons: their parts of the first body are made thinner, and
  * where the bodies are bonded thicker, too, or only some of them would be held. *worst: the deepest of this rank that
- * was not. */
-static void fit(Model *m, PetscInt k, const Surface *first, const Surface *second, LostPoint *worst, PetscReal *deepest)
+ * was not. Returns the largest change, m: of what has changed normals have, too. */
+static PetscReal fit(Model *m, PetscInt k, const Surface *first, const Surface *second, LostPoint *worst,
+                     PetscReal *deepest)
 {
   const PetscBool bonded = (PetscBool)(m->c->interfaces[k].contact == CONTACT_BONDED);
+  PetscReal changed = 0;
   SurfacePair pair;
   PetscMPIInt rank;
   MPI_Comm_rank(m->comm, &rank);
   for (const SurfacePoint *p = first->point; p < first->point + first->n; ++p) {
     if (p->rank != rank || !surface_meet(first, p, second, m->grid->smallest, &pair)) continue;
     const PetscReal reach = contact_reach_of(m->points, p->owner, pair.normal), gap = pair.gap - reach;
-    if (gap > 0 && gap < (bonded ? MADE_TO_FIT * p->size : HAIR * m->grid->smallest)) reach_over(m, k, p->owner, &pair);
-    if (gap >= 0) continue;
-    if (gap > -THROUGH * reach) contact_take_back(m->points, p->owner, pair.normal, pair.gap);
-    else if (gap < *deepest) {
-      *deepest = gap;
-      PetscCallAbort(m->comm, PetscArraycpy(worst->x, p->x, 3));
-    }
+    const PetscBool over = (PetscBool)(gap > 0 && gap < (bonded ? MADE_TO_FIT * p->size : HAIR * m->grid->smallest));
+    const PetscReal through = PetscMin(PetscMax(THROUGH * reach, SLIVER * m->grid->smallest), (1 - THROUGH) * reach);
+    const PetscBool back = (PetscBool)(gap < 0 && gap > -through);
+    if (over) reach_over(m, k, p->owner, &pair);
+    if (back) contact_take_back(m->points, p->owner, pair.normal, pair.gap);
+    if (over || back) changed = PetscMax(changed, PetscAbsReal(gap));
+    if (gap >= 0 || back || gap >= *deepest) continue;
+    *deepest = gap;
+    PetscCallAbort(m->comm, PetscArraycpy(worst->x, p->x, 3));
   }
+  return changed;
 }
 
 /* What the bodies of interface k have near each other. */
@@ -132,16 +141,19 @@ static PetscErrorCode GatherBoth(const Model *m, const SurfaceInput *in, const P
 static PetscErrorCode FitInterface(Model *m, const SurfaceInput *in, const PetscReal *bounds, PetscInt k, Diag *diag)
 {
   const InterfaceSpec *s = m->c->interfaces + k;
-  PetscReal deepest = 0, all;
+  PetscReal deepest = 0, all = 0, changed = PETSC_MAX_REAL;
   LostPoint worst = {0};
   Surface body[2];
   char path[64];
 
   PetscFunctionBeginUser;
-  PetscCall(GatherBoth(m, in, bounds, k, body));
-  fit(m, k, body, body + 1, &worst, &deepest);
-  for (int i = 0; i < 2; ++i) PetscCall(SurfaceClear(body + i));
-  PetscCall(MPIU_Allreduce(&deepest, &all, 1, MPIU_REAL, MPIU_MIN, m->comm));
+  for (int pass = 0; pass < FITTINGS && all == 0 && changed > FITS * m->grid->smallest; ++pass) {
+    PetscCall(GatherBoth(m, in, bounds, k, body));
+    changed = fit(m, k, body, body + 1, &worst, &deepest);
+    for (int i = 0; i < 2; ++i) PetscCall(SurfaceClear(body + i));
+    PetscCall(MPIU_Allreduce(&deepest, &all, 1, MPIU_REAL, MPIU_MIN, m->comm));
+    PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &changed, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  }
   if (all == 0 || deepest > all) PetscFunctionReturn(0);
   snprintf(path, sizeof path, "interfaces[%d]", (int)k);
   diag_error(diag, path, "'%s' goes through '%s' at the start: its point at (%g, %g) m is %.3g m inside", s->between[0],
