@@ -19,7 +19,7 @@ static PetscBool varies(const Loads *l, PetscInt load) { return l->asked[load].a
 static PetscErrorCode Evaluate(const Loads *l, PetscInt load, PetscInt n, const PetscReal *X, const PetscReal *x,
                                PetscReal t, PetscReal *f)
 {
-  LoadPlace place = {.dim = l->dim, .t = t};
+  LoadPlace place = {.dim = l->dim, .t = t - l->c->loads[load].amplitude.origin};
   PetscReal factor;
 
   PetscFunctionBeginUser;

@@ -136,7 +136,8 @@ static PetscErrorCode ResolveFormulation(const YamlNode *root, const Case *whole
 
   PetscFunctionBeginUser;
   if (yaml_find(root, "formulation") || !seeks || !method || !method->takes_pressure) PetscFunctionReturn(0);
-  const PetscBool shared = whole ? !strcmp(whole->formulation, "mean-dilatation") : case_dilates(c) && cells_share(c);
+  const PetscBool dilates = (PetscBool)(case_dilates(c) || runs_explicit);
+  const PetscBool shared = whole ? !strcmp(whole->formulation, "mean-dilatation") : dilates && cells_share(c);
   if (whole ? !case_is_mixed(whole) && !shared : !shared && runs_explicit) PetscFunctionReturn(0);
   PetscCall(PetscFree(c->formulation));
   PetscCall(PetscStrallocpy(shared ? "mean-dilatation" : "mixed", &c->formulation));

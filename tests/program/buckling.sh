@@ -27,4 +27,12 @@ expect "bent" 0 "$talus" run column.yaml --out bent --set analysis.steps=40 --se
 awk -F, 'END { exit !($3 > 1.4 && $3 < 1.6) }' bent/history.csv || fail "does not bend as the elastica does"
 expect "below" 0 "$talus" run column.yaml --out below --set 'loads.tractions[0].value=[0, -4.5e5]'
 ! grep -q 'nothing stays' err.txt || fail "tells of what stands"
+# Multipliers of what holds a cloud by mls make pivots negative that mean nothing, and so does what slides between walls.
+expect "a cloud" 0 "$talus" run column.yaml --out cloud --set method=gmm --set 'basis={mls: {}}' --set formulation=displacement \
+  --set 'grid={box: {min: [0, 0], max: [1, 1]}, counts: [4, 4]}' --set 'bodies[0].shape={box: {min: [0, 0], max: [1, 1]}}' \
+  --set loads.points=null --set 'measures.aside.of.tracer=[0.5, 0.5]'
+! grep -q 'nothing stays' err.txt || fail "tells of a cloud that stands"
+# Who stays where it should not is told of until the end, though nothing changes any more.
+expect "held" 0 "$talus" run column.yaml --out held --set 'loads.tractions[0].amplitude=[[0, 0], [0.8, 1], [1, 1]]'
+says err.txt "from t = " "nothing stays"
 finish

@@ -53,6 +53,13 @@ for step in 3 5 7; do
   rm -rf cut
 done
 
+# A point force on what comes, and a factor whose t counts from the stage's start: 60 and 40 kN more.
+for method in mpm fem; do
+  expect "a point, $method" 0 "$talus" run fill.yaml --out point --force --set method=$method --set analysis.end=1 \
+    --set 'stages=[{name: ground}, {name: fill, bodies: [{name: fill, absent: false}], loads: {points: [{at: [1, 2.9], force: [0, -6e4]}], tractions: [{on: {body: fill, y: 3}, value: [0, -2e4], factor: t}]}}]'
+  awk -F, 'END { d = $4 / 1e3 - 300; exit !(d > -0.05 && d < 0.05) }' point/history.csv || fail "$name: $(tail -n 1 point/history.csv)"
+done
+
 # What begins on a body that has been there has no carriers; and what is not there bears nothing.
 expect "too late" 2 "$talus" check fill.yaml --set 'stages[2].loads={tractions: [{on: {body: ground, y: 2}, value: [0, -1]}]}'
 says err.txt "can begin only with the undeformed body, in the first stage" "with an amplitude that is 0 until it comes"

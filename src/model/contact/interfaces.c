@@ -7,7 +7,7 @@
 /* Of its reach: a part of a body that reaches deeper into another body at the start is a mistake; what
  * reaches less was made to fit. */
 #define THROUGH 0.1
-#define SLIVER 0.02 /* of a cell: and of what is thinner */
+#define SLIVER 0.03 /* of a cell: and of what is thinner */
 #define CLOSES 0.1  /* of a cell: a wider gap is told of (stage/gaps.c) */
 #define HAIR 1e-4   /* of a cell: a gap within it is one of the digits in which places are written */
 /* surfaces that are fitted have other normals, for which they do not quite fit */

@@ -81,11 +81,19 @@ static PetscInt largest_of(const LoadSpec *load)
 
 static PetscBool is_zero(const LoadSpec *load) { return (PetscBool)(load->value[largest_of(load)] == 0); }
 
-/* Does it begin with the body that it acts on? */
+#define BESIDE 1e-9 /* m: a point that stands on the surface of its body */
+
+/* Does it begin with the body that it acts on? A point load acts on what is at its place. */
 static PetscBool comes_with_body(const Case *c, const Case *from, const LoadSpec *load)
 {
-  for (PetscInt b = 0; load->on.body && b < c->n_bodies; ++b)
-    if (!strcmp(c->bodies[b].name, load->on.body)) return body_comes(c, from, b);
+  const PetscInt dim = kinematics_dim(c->kinematics);
+  for (PetscInt b = 0; b < c->n_bodies; ++b) {
+    const BodySpec *body = &c->bodies[b];
+    if (body->absent || !body_comes(c, from, b)) continue;
+    if (load->on.body && !strcmp(body->name, load->on.body)) return PETSC_TRUE;
+    if (load->kind == LOAD_POINT && body->has_shape && shape_contains(&body->shape, dim, load->at, BESIDE))
+      return PETSC_TRUE;
+  }
   return PETSC_FALSE;
 }
 

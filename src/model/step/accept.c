@@ -121,9 +121,13 @@ static void note_mechanism(Model *m, PetscReal sign, PetscReal dt)
 
 /* A force that is raised beyond what a column bears finds it straight, if the step leads past the place where it begins
  * to bend. */
-static void note_unstable(Model *m, const NewtonReport *newton)
+static void note_unstable(Model *m, PetscReal before, const NewtonReport *newton)
 {
   if (m->c->analysis.type != ANALYSIS_STATIC) return;
+  const PetscBool goes_on =
+    (PetscBool)(m->unstable.ways > 0 && PetscAbsReal(m->unstable.last - before) < 1e-9 * (m->time - before) &&
+                newton->negative < 0);
+  if (goes_on) m->unstable.last = m->time; /* where nothing changes nobody asks */
   if (newton->negative <= 0) return;
   if (!m->unstable.ways) m->unstable.first = m->time;
   m->unstable.last = m->time;
@@ -147,7 +151,7 @@ PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepRepor
   PetscCall(EnergyClose(m, energy));
   PetscCall(OutsideAdd(m, report));
   PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
-  note_unstable(m, &report->newton);
+  note_unstable(m, m->time - dt, &report->newton);
   report->outcome = STEP_ACCEPTED;
   report->dt = dt;
   PetscFunctionReturn(0);

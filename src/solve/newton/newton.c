@@ -294,7 +294,8 @@ static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonRe
   newton_rest_without_unknowns(p);
   n->before = n->last = 0;
   n->search.enough = p->stiff ? ENOUGH_STIFF : ENOUGH;
-  n->changes = n->changed = n->rescues = n->negative = 0;
+  n->changes = n->changed = n->rescues = 0;
+  n->negative = -1;
   PetscCall(EliminationBegin(&n->elimination, p));
   PetscCall(UpdateSaddle(n));
   PetscCall(UpdateProjection(n));

@@ -80,7 +80,7 @@ typedef struct {
   LawStatus status;
   PetscInt bad_point; /* local, of that status; -1 */
   /* ways in which the last tangent that was factorised as a symmetric one is negative: an equilibrium in which nothing
-   * stays, if there are any; 0 where nobody knows */
+   * stays, if there are any; -1 where nobody knows */
   PetscInt negative;
 } NewtonReport;
 

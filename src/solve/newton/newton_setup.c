@@ -16,7 +16,8 @@ PetscErrorCode NewtonReset(Newton *n)
   PetscFunctionReturn(0);
 }
 
-/* Of displacements alone: pressures make pivots negative that mean nothing. Walls push, and do not make any. */
+/* Of displacements alone, which nothing meets: pressures and multipliers make pivots negative that mean nothing, and
+ * what slides between walls has some that are round-off. */
 static PetscErrorCode CountNegative(Newton *n, KSP ksp)
 {
   PetscBool symmetric;
@@ -24,8 +25,9 @@ static PetscErrorCode CountNegative(Newton *n, KSP ksp)
   PC pc;
 
   PetscFunctionBeginUser;
-  n->negative = 0;
-  if (!n->direct || n->problem->pressure) PetscFunctionReturn(0);
+  n->negative = -1;
+  if (!n->direct || n->problem->pressure || n->problem->scene.contact) PetscFunctionReturn(0);
+  if (nodal_forces_constraints(n->problem->forces)) PetscFunctionReturn(0);
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCCHOLESKY, &symmetric));
   if (!symmetric) PetscFunctionReturn(0);

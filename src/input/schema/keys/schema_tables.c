@@ -340,7 +340,7 @@ static const SchemaEntry case_entries[] = {
   KEY("formulation", WORD_TEXT, NULL, "unknowns of the equations", .registry = (const void *const *)formulations,
       .fallback = "displacement",
       .note = "displacement; where a factor of safety or a limit load is sought, in any of the stages, mixed, or "
-              "mean-dilatation with a dilatancy angle in whole cells; not mixed beside explicit stages",
+              "mean-dilatation (whole cells) with a dilatancy angle or beside explicit stages",
       AT(Case, formulation)),
   KEY("mixed", TABLE, NULL, "numbers of the mixed formulation", .table = &mixed, ALWAYS, AT(Case, mixed)),
   KEY("analysis", TABLE, NULL, "statics or dynamics, steps", .table = &analysis, REQUIRED, AT(Case, analysis)),
