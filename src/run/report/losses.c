@@ -131,13 +131,24 @@ static void warn_of_transfer(const Model *m, Diag *diag)
   const PetscBool implicit = (PetscBool)(m->method->restores_grid && m->c->analysis.type == ANALYSIS_DYNAMIC);
   if (!m->method->restores_grid && m->c->staged && case_is_static(&m->c->analysis)) return; /* of what went away */
   if (PetscAbsReal(share) <= TRANSFER_ALLOWED) return;
-  diag_warning(diag, NULL,
-               "the transfer between points and grid %s %.2g %% of the energy that came in (%.4g of %.4g J): an energy "
-               "balance near 0 does not show it",
-               share > 0 ? "took" : "gave", (double)(100 * PetscAbsReal(share)), (double)PetscAbsReal(taken),
-               (double)m->most_energy);
+  diag_warning(
+    diag, NULL,
+    "%s %s %.2g %% of the energy that came in (%.4g of %.4g J): an energy balance near 0 does "
+    "not show it",
+    m->method->restores_grid ? "the transfer between points and grid" : "the transfer to what stops or holds it",
+    share > 0 ? "took" : "gave", (double)(100 * PetscAbsReal(share)), (double)PetscAbsReal(taken),
+    (double)m->most_energy);
   if (implicit && m->space->transfer == transfers[0] && !materials_yield(m->c->n_materials, m->materials))
     diag_hint(diag, "elastic bodies keep it with `analysis: {transfer: consistent}` (docs/theory.md, Energy)");
+  else if (m->contact && m->c->analysis.type == ANALYSIS_EXPLICIT)
+    diag_hint(diag,
+              "springs of what touches store a part of it, and their dashpots take what swings until it rests; smaller "
+              "cells lessen it; measure {energy: transfer} shows when (docs/theory.md, section 34)");
+  else if (m->contact && !m->method->restores_grid)
+    diag_hint(
+      diag,
+      "steps in which contact opens, closes or begins to slide count its work by the mean of their ends: shorter "
+      "ones lessen it; measure {energy: transfer} shows when (docs/theory.md, Energy)");
   else
     diag_hint(diag,
               "smaller cells where bodies meet and smaller steps lessen it; measure {energy: transfer} shows when "
