@@ -233,7 +233,7 @@ typedef struct {
 } ContactWork;
 
 /* On this rank. */
-ContactWork contact_work(const Model *model);
+ContactWork contact_work(const Model *model, PetscReal dt);
 /* Collective, before the step is committed: mean forces of the step, and what is remembered. */
 PetscErrorCode ContactForces(Model *model, PetscReal dt);
 /* Collective. After the points' strain was committed: what measures ask of each wall. */

@@ -170,15 +170,30 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
   PetscFunctionReturn(0);
 }
 
+/* What the wall moves by where the material is in the middle of its way to x: along that the mean force does what its
+ * torque does. */
+static void passing(const Model *m, const ContactPoint *c, PetscReal dt, const PetscReal x[3], PetscReal passes[3])
+{
+  const Contact *s = m->contact;
+  PetscReal start[3];
+  for (int d = 0; d < 3; ++d) {
+    passes[d] = c->passes[d];
+    start[d] = 0.5 * (c->x[d] + x[d] - c->swept[d]);
+  }
+  if (!m->scheme->inertia || c->wall >= s->n_walls || contact_rigid(s, c)) return;
+  wall_motion(s->walls, c->wall, m->time, m->time + dt, start, passes);
+}
+
 /* Of the mean force in the step. */
-static ContactWork point_work(const Model *m, const ContactPoint *c)
+static ContactWork point_work(const Model *m, const ContactPoint *c, PetscReal dt)
 {
   const PetscReal end = m->scheme->inertia ? share_of_force(m).mean : 0.5, first = m->scheme->inertia ? 0 : 0.5;
-  PetscReal f[3], balance[3], x[3], pressure = 0, closing = 0;
+  PetscReal f[3], balance[3], x[3], passes[3], pressure = 0, closing = 0;
   ContactWork work = {0};
   contact_acts(c, f);
   contact_balance(m->contact, c, balance);
   contact_place(m->contact, c, m->nodes->du, 1, x);
+  passing(m, c, dt, x, passes);
   for (int d = 0; d < 3; ++d) {
     f[d] = first * c->last[d] + end * f[d];
     pressure += f[d] * c->normal[d];
@@ -188,8 +203,8 @@ static ContactWork point_work(const Model *m, const ContactPoint *c)
     const PetscReal start = c->stays * c->last[d];
     work.start += 0.5 * start * (x[d] - c->x[d]);
     work.more += (f[d] - 0.5 * (start + balance[d])) * (x[d] - c->x[d]);
-    work.moving += f[d] * c->passes[d];
-    work.closing += f[d] * (c->swept[d] - c->passes[d]);
+    work.moving += f[d] * passes[d];
+    work.closing += f[d] * (c->swept[d] - passes[d]);
     work.sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
   }
   work.closing += pressure * closing;
@@ -201,12 +216,12 @@ static ContactWork point_work(const Model *m, const ContactPoint *c)
   return work;
 }
 
-ContactWork contact_work(const Model *m)
+ContactWork contact_work(const Model *m, PetscReal dt)
 {
   const Contact *s = m->contact;
   ContactWork sum = {0};
   for (PetscInt k = 0; s && k < s->n; ++k) {
-    const ContactWork work = point_work(m, s->point + k);
+    const ContactWork work = point_work(m, s->point + k, dt);
     if (contact_rigid(s, s->point + k)) sum.rigid += work.moving;
     sum.start += work.start;
     sum.moving += work.moving;
@@ -240,7 +255,7 @@ PetscErrorCode ContactSurvey(Model *m)
   PetscCall(PetscCalloc2(2 * n, &sums, n, &deepest));
   PetscCall(ContactCover(m->contact, m->grid));
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    sums[c->wall] += point_work(m, c).sliding;
+    sums[c->wall] += point_work(m, c, 0).sliding;
     if (!c->covered) continue;
     take_section(m, &scene, c);
     sums[n + c->wall] += c->section;
@@ -277,6 +292,36 @@ static void settle(Model *m, PetscReal dt)
   }
 }
 
+/* Of a wall in the step: forces of the balance where they act in the middle of the way, and at its end; impulses; what is
+ * taken out of those of the end; by how much the torque of what nodes remember grows from the step's start to its
+ * middle. */
+enum { MIDDLE, AT_END, IMPULSES, EXCESS, REMEMBERED, PARTS };
+
+static void sum_point(const Model *m, const ContactPoint *c, PetscInt n, ContactSum *now)
+{
+  const Contact *s = m->contact;
+  PetscReal f[3], start[3], middle[3], end[3], last[3], moved[3];
+  contact_place(s, c, m->nodes->du, 0, start);
+  contact_place(s, c, m->nodes->du, 0.5, middle);
+  contact_place(s, c, m->nodes->du, 1, end);
+  contact_balance(s, c, f);
+  /* as angular momentum has it; in statics forces are those at the end */
+  contact_add(m->scheme->inertia ? middle : end, m->dim, f, now + MIDDLE * n + c->wall);
+  contact_add(end, m->dim, f, now + AT_END * n + c->wall);
+  contact_excess(s, c, f);
+  contact_add(end, m->dim, f, now + EXCESS * n + c->wall);
+  for (int d = 0; d < 3; ++d) last[d] = c->stays * c->last[d], moved[d] = middle[d] - start[d];
+  contact_add(moved, m->dim, last, now + REMEMBERED * n + c->wall);
+}
+
+/* Forces that nodes remember of the last step, there as if where they have come to by `part` of the half of their way. */
+static ContactSum remembered(const ContactSum *rate, const ContactSum *moved, PetscReal part)
+{
+  ContactSum sum = *rate;
+  for (int d = 0; d < 3; ++d) sum.torque[d] += part * moved->torque[d];
+  return sum;
+}
+
 /* As reactions of the boundary (accept.c): over the step the scheme weighs the forces of both ends,
  * and impulses count besides. */
 PetscErrorCode ContactForces(Model *m, PetscReal dt)
@@ -288,32 +333,24 @@ PetscErrorCode ContactForces(Model *m, PetscReal dt)
 
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(3 * n, &now)); /* forces at the end, impulses, what is taken out of the first */
-  for (PetscInt k = 0; k < s->n; ++k) {
-    ContactPoint *c = s->point + k;
-    PetscReal f[3], x[3];
-    /* the mean force acts in the middle of the way, as angular momentum has it; in statics it is that at the end */
-    contact_place(s, c, m->nodes->du, m->scheme->inertia ? 0.5 : 1, x);
-    contact_balance(s, c, f);
-    contact_add(x, m->dim, f, now + c->wall);
-    contact_excess(s, c, f);
-    contact_add(x, m->dim, f, now + 2 * n + c->wall);
-  }
-  PetscCall(PetscArraycpy(now + n, s->impulse, n));
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, now, (PetscMPIInt)(3 * n * SUM_NUMBERS), MPIU_REAL, MPI_SUM, m->comm));
+  PetscCall(PetscCalloc1(PARTS * n, &now));
+  for (PetscInt k = 0; k < s->n; ++k) sum_point(m, s->point + k, n, now);
+  PetscCall(PetscArraycpy(now + IMPULSES * n, s->impulse, n));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, now, (PetscMPIInt)(PARTS * n * SUM_NUMBERS), MPIU_REAL, MPI_SUM, m->comm));
   for (PetscInt k = 0; k < n; ++k) {
     WallState *wall = s->wall + k;
-    const ContactSum before = wall->rate;
+    const ContactSum *moved = now + REMEMBERED * n + k;
+    const ContactSum middle = remembered(&wall->rate, moved, 1), end = remembered(&wall->rate, moved, 2);
     wall->mean = wall->rate = (ContactSum){0};
-    add(&wall->rate, 1 / (1 - w.lag), now + k);
-    add(&wall->rate, -w.lag / (1 - w.lag), &before);
-    wall->friction += now[n + k].sliding;
+    wall->friction += now[IMPULSES * n + k].sliding;
     if (m->scheme->inertia) {
-      add(&wall->mean, 1 - w.mean, &before);
-      add(&wall->mean, w.mean, &wall->rate);
-      add(&wall->mean, 1 / dt, now + n + k);
-    } else add(&wall->mean, 1, now + k);
-    add(&wall->rate, -1, now + 2 * n + k);
+      add(&wall->mean, 1 - w.mean - w.mean * w.lag / (1 - w.lag), &middle);
+      add(&wall->mean, w.mean / (1 - w.lag), now + MIDDLE * n + k);
+      add(&wall->mean, 1 / dt, now + IMPULSES * n + k);
+    } else add(&wall->mean, 1, now + MIDDLE * n + k);
+    add(&wall->rate, 1 / (1 - w.lag), now + AT_END * n + k);
+    add(&wall->rate, -w.lag / (1 - w.lag), &end);
+    add(&wall->rate, -1, now + EXCESS * n + k);
   }
   PetscCall(PetscFree(now));
   settle(m, dt);

@@ -257,7 +257,7 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
   const PetscReal damping = model_damping(m);
   const NodalFields *n = m->nodes;
   const PetscReal end = share_of_end(m);
-  const ContactWork contact = contact_work(m);
+  const ContactWork contact = contact_work(m, dt);
   PetscReal g0[3], g1[3], *before, *after, held = 0, impulse = 0, unbalanced = 0, rest;
 
   PetscFunctionBeginUser;
