@@ -262,8 +262,9 @@ static const SchemaEntry output_entries[] = {
   KEY("fields", FIELDS, NULL,
       "fields to write, see `talus list fields`; what points of a loaded law keep, too (docs/plugin.md)",
       .fallback = "[displacement, velocity, stress]", AT(OutputSpec, fields), .count = offsetof(OutputSpec, n_fields)),
-  KEY("every", EVERY, NULL, "when states are written", .fallback = "end", AT(OutputSpec, every)),
-  KEY("history", EVERY, NULL, "when rows of history.csv are written", .fallback = "{steps: 1}",
+  KEY("every", EVERY, NULL, "when states are written: a step ends there, and is shorter for it", .fallback = "end",
+      AT(OutputSpec, every)),
+  KEY("history", EVERY, NULL, "when rows of history.csv are written, as `every`", .fallback = "{steps: 1}",
       AT(OutputSpec, history)),
   KEY("grid", BOOLEAN, NULL, "write the fields of the grid too", .fallback = "true", AT(OutputSpec, grid)),
   KEY(
