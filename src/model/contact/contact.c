@@ -36,7 +36,10 @@ static ContactShare share_of_force(const Model *m)
   const TimeWeights w = m->scheme->weights(&m->c->analysis, 1);
   const PetscBool yields = materials_yield(m->c->n_materials, m->materials);
   if (!contact_holds(m))
-    return (ContactShare){.mean = 1, .yields = yields, .moves = m->scheme->inertia, .resets = m->method->restores_grid};
+    return (ContactShare){.mean = 1,
+                          .yields = yields,
+                          .moves = m->scheme->inertia,
+                          .fades = m->method->restores_grid && m->control.wait == 0};
   return (ContactShare){.inertia = PETSC_TRUE,
                         .flows = yields,
                         .yields = yields,

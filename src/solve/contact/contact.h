@@ -83,7 +83,7 @@ typedef struct {
   PetscBool flows;  /* may matter with inertia yield? Then gaps are measured by what it moves */
   PetscBool moves;  /* has matter inertia, whatever the scheme remembers? */
   PetscBool yields; /* may it at all? What it strains by is no millionth then */
-  PetscBool resets; /* does it move through its nodes from step to step? */
+  PetscBool fades;  /* does it move through its nodes, in statics that have not failed lately? */
   PetscReal mean, back, lag;
 } ContactShare;
 
