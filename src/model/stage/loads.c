@@ -81,17 +81,19 @@ static PetscInt largest_of(const LoadSpec *load)
 
 static PetscBool is_zero(const LoadSpec *load) { return (PetscBool)(load->value[largest_of(load)] == 0); }
 
-#define BESIDE 1e-9 /* m: a point that stands on the surface of its body */
+#define BESIDE 1e-9 /* of how far it is from the origin: a point that stands on the surface of its body */
 
 /* Does it begin with the body that it acts on? A point load acts on what is at its place. */
 static PetscBool comes_with_body(const Case *c, const Case *from, const LoadSpec *load)
 {
   const PetscInt dim = kinematics_dim(c->kinematics);
+  const PetscReal beside =
+    BESIDE * (1 + PetscAbsReal(load->at[0]) + PetscAbsReal(load->at[1]) + PetscAbsReal(load->at[2]));
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
     const BodySpec *body = &c->bodies[b];
     if (body->absent || !body_comes(c, from, b)) continue;
     if (load->on.body && !strcmp(body->name, load->on.body)) return PETSC_TRUE;
-    if (load->kind == LOAD_POINT && body->has_shape && shape_contains(&body->shape, dim, load->at, BESIDE))
+    if (load->kind == LOAD_POINT && body->has_shape && shape_contains(&body->shape, dim, load->at, beside))
       return PETSC_TRUE;
   }
   return PETSC_FALSE;
