@@ -107,4 +107,19 @@ says out.txt "outside " "outside_momentum "
 expect "of a body" 2 "$talus" check fly.yaml --set 'measures.mass.of={body: gone}'
 says err.txt "outside: mass is known for the whole model only"
 
+
+# Cells eighty times as long as high: a tracer's stress is that of the points around it, as far as cells go along each axis.
+cat >flat.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [160, 0.3]}, counts: [80, 12]}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [160, 0.2]}}, points_per_cell: 4, material: m, k0: 0.5}]
+materials: {m: {law: mohr-coulomb, density: 2000, young: 1e7, poisson: 0.3, friction_angle: 30, cohesion: 0}}
+boundary: [{on: {boundary: bottom}, fix: [x, y]}, {on: {boundary: left}, fix: [x]}, {on: {boundary: right}, fix: [x]}]
+loads: {gravity: [0, -10]}
+measures: {yy: {stress: yy, of: {tracer: [80.3, 0.12]}}, top: {stress: yy, of: {tracer: [7, 0.199]}}}
+END
+expect "flat cells" 0 "$talus" run flat.yaml --out flat
+awk -F, 'END { exit !($3 > -1650 && $3 < -1550 && $4 > -100 && $4 < 50) }' flat/history.csv || fail "$name: $(tail -n 1 flat/history.csv)"
 finish

@@ -7,9 +7,11 @@
 
 #define REACH 3.0      /* spacings of points */
 #define UNDECIDED 0.01 /* spread in a direction, over the largest, that tells no slope */
+#define LONG 4.0       /* cells longer than that, over their shortest side, have points as far apart along each axis */
 
+/* reach: along each axis, m */
 typedef struct {
-  PetscReal x[3], spacing;
+  PetscReal x[3], reach[3];
   PetscInt body;
 } Place;
 
@@ -45,14 +47,31 @@ static PetscReal spacing_of(const Model *m, PetscInt p)
   return PetscPowReal(volume / thickness, 1.0 / (PetscReal)m->dim);
 }
 
-/* Body and spacing of the point nearest to the place. */
+/* How far points are asked along each axis. */
+static void reach_of(const Model *m, PetscInt p, PetscReal reach[3])
+{
+  PetscReal x[CELL_MAX_NODES * 3], side[3] = {1, 1, 1}, least = PETSC_MAX_REAL, most = 0, product = 1;
+  const PetscInt nodes = m->points->cell[p] < 0 ? 0 : cells[grid_cell_type(m->grid, m->points->cell[p])].nodes;
+  if (nodes) grid_cell_x(m->grid, m->points->cell[p], x);
+  for (PetscInt d = 0; nodes && d < m->dim; ++d) {
+    PetscReal low = x[d], high = x[d];
+    for (PetscInt i = 0; i < nodes; ++i)
+      low = PetscMin(low, x[i * m->dim + d]), high = PetscMax(high, x[i * m->dim + d]);
+    side[d] = high - low;
+    least = PetscMin(least, side[d]), most = PetscMax(most, side[d]), product *= side[d];
+  }
+  const PetscReal mean = PetscPowReal(product, 1.0 / (PetscReal)m->dim), spacing = REACH * spacing_of(m, p);
+  for (PetscInt d = 0; d < 3; ++d) reach[d] = most > LONG * least ? spacing * side[d] / mean : spacing;
+}
+
+/* Body of the point nearest to the place, and how far others are asked. */
 static PetscErrorCode FindNearest(const Model *m, Place *place)
 {
   struct {
     double distance2;
     int rank;
   } mine = {HUGE_VAL, 0};
-  PetscReal numbers[2] = {0, -1};
+  PetscReal numbers[4] = {0, 0, 0, -1};
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(m->comm, &mine.rank));
@@ -60,13 +79,13 @@ static PetscErrorCode FindNearest(const Model *m, Place *place)
     const PetscReal square = distance2(m, p, place->x);
     if (!(square < mine.distance2)) continue;
     mine.distance2 = square;
-    numbers[0] = spacing_of(m, p);
-    numbers[1] = (PetscReal)m->points->body[p];
+    reach_of(m, p, numbers);
+    numbers[3] = (PetscReal)m->points->body[p];
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mine, 1, MPI_DOUBLE_INT, MPI_MINLOC, m->comm));
-  PetscCallMPI(MPI_Bcast(numbers, 2, MPIU_REAL, mine.rank, m->comm));
-  place->spacing = numbers[0];
-  place->body = (PetscInt)numbers[1];
+  PetscCallMPI(MPI_Bcast(numbers, 4, MPIU_REAL, mine.rank, m->comm));
+  memcpy(place->reach, numbers, sizeof place->reach);
+  place->body = (PetscInt)numbers[3];
   PetscFunctionReturn(0);
 }
 
@@ -78,10 +97,12 @@ typedef struct {
 
 static void add_point(const Model *m, PetscInt p, const Place *place, PointTensor *tensor, Moments *sum)
 {
-  const PetscReal reach = REACH * place->spacing, square = distance2(m, p, place->x) / (reach * reach);
-  PetscReal x[3] = {0}, volume = 0, value[6] = {0};
+  PetscReal x[3] = {0}, square = 0, volume = 0, value[6] = {0};
+  for (PetscInt d = 0; d < m->dim; ++d) {
+    x[d] = (point_real(m->points, POINT_X, p)[d] - place->x[d]) / place->reach[d];
+    square += PetscSqr(x[d]);
+  }
   if (square >= 1 || m->points->body[p] != place->body) return;
-  for (PetscInt d = 0; d < m->dim; ++d) x[d] = (point_real(m->points, POINT_X, p)[d] - place->x[d]) / reach;
   tensor(m, p, PetscSqr(1 - square), value, &volume);
   sum->volume += volume;
   for (int k = 0; k < 6; ++k) sum->tensor[k] += value[k];
