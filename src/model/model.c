@@ -371,6 +371,16 @@ static PetscInt layers_beyond(const Model *m)
   return PetscMax(basis_find(c->basis.kind)->halo, levels) + lap + meets;
 }
 
+/* Ranks know other nodes in each stage: outputs ask each stage's own model where they were drawn. */
+static PetscErrorCode KeepDrawn(Model *m)
+{
+  PetscFunctionBeginUser;
+  if (!m->method || m->method->restores_grid || m->method->clouds || !m->c->staged) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(m->grid->n_nodes * m->dim, &m->drawn));
+  PetscCall(PetscArraycpy(m->drawn, m->grid->x, m->grid->n_nodes * m->dim));
+  PetscFunctionReturn(0);
+}
+
 /* Everything after the parts that stand alone; each may find mistakes that make the next
  * meaningless. */
 static PetscErrorCode Build(Model *m, Diag *diag)
@@ -391,6 +401,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
   PetscCall(GridWiden(&m->grid, layers_beyond(m)));
+  PetscCall(KeepDrawn(m));
   PetscCall(CreateBodies(m, diag));
   raised_advise(m, diag);
   PetscCall(DiagReduce(m->comm, diag, &errors));
@@ -461,6 +472,7 @@ PetscErrorCode ModelDestroy(Model **model)
   if (m->tracers) PetscCall(PointsDestroy(&m->tracers));
   if (m->points) PetscCall(PointsDestroy(&m->points));
   if (m->grid) PetscCall(GridDestroy(&m->grid));
+  PetscCall(PetscFree(m->drawn));
   PetscCall(PetscFree(m->let_go));
   PetscCall(PetscFree(m->raised.nodal));
   PetscCall(PetscFree2(m->unheld.dof, m->unheld.turns));

@@ -139,6 +139,7 @@ typedef struct Model {
   Material *materials;
   PetscInt n_state;
   Grid *grid;
+  PetscReal *drawn; /* of fem with stages: n_nodes x dim, where nodes were before any state was taken, m; else NULL */
   Points *points;
   Points *tracers; /* body = index of the measure */
   Boundary *boundary;

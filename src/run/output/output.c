@@ -221,7 +221,7 @@ static PetscErrorCode NodalDisplacement(const Output *o, const Model *m, PetscRe
   const Support *w = m->space->support;
 
   PetscFunctionBeginUser;
-  const PetscReal *x0 = m->grid->cloud ? m->grid->cloud->x0 : o->x0;
+  const PetscReal *x0 = m->grid->cloud ? m->grid->cloud->x0 : m->drawn ? m->drawn : o->x0;
   for (PetscInt i = 0; i < dofs; ++i) u[i] = m->method->restores_grid ? 0 : m->grid->x[i] - x0[i];
   if (!m->method->restores_grid) PetscFunctionReturn(0);
   for (PetscInt g = 0; g < w->n_groups; ++g) {
