@@ -95,4 +95,26 @@ lacks err.txt locks
 # Who begins where another run ended moves as in that run.
 expect "begins" 2 "$talus" run fall.yaml --out begins --set 'initial={run: fall}'
 says err.txt "'block' comes from the run of \`initial\` with the velocities that it has there"
+
+# A disk strikes a bar that flies freely while explicit steps become implicit ones: both keep their momentum (0.7 of 393 N s
+# came from nowhere: the bar had the mean of a step in place of the force at its end).
+cat >strikes.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: explicit, end: 0.03, step: 0.002}
+grid: {box: {min: [-0.5, -0.5], max: [1, 1]}, size: 0.1}
+bodies: [{name: disk, shape: {circle: {centre: [0, 0.3], radius: 0.25}}, points_per_cell: 4, material: rubber, velocity: [2, 0]}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+walls: [{name: bar, shape: {box: {min: [0.26, -0.5], max: [0.5, 0.5]}}, mass: {mass: 300, inertia: 30, gravity: false}, friction: 0.3}]
+measures: {x: {momentum: x}, y: {momentum: y}, along: {wall_velocity: x, of: {wall: bar}}, up: {wall_velocity: y, of: {wall: bar}}}
+output: {fields: [displacement], history: {steps: 1}}
+stages:
+  - name: strikes
+  - {name: leaves, analysis: {type: dynamic, end: 0.02, step: 0.002}}
+END
+for ranks in 1 2 3; do
+  expect "strikes, $ranks" 0 on_ranks $ranks "$talus" run strikes.yaml --out strikes --force
+  awk -F, 'NR == 2 { first = $4 + 300 * $6 } NR > 1 { x = $4 + 300 * $6 - first; y = $5 + 300 * $7; if (x * x > 1e-8 || y * y > 1e-8) { bad = 1; print } moved = $6 }
+    END { exit bad || NR < 25 || moved < 0.1 }' strikes/history.csv >out.txt || fail "$name: momentum"
+done
 finish

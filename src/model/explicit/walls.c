@@ -207,6 +207,27 @@ void walls_follow(Model *m, Explicit *e)
   heavy_go(m);
 }
 
+/* Of each partner what acts on its material at the end of the step: implicit steps that follow begin with it. */
+static PetscErrorCode TakeRates(Model *m)
+{
+  Contact *s = m->contact;
+  ContactSum *now;
+  PetscReal f[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(s->n_partners, &now));
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    if (c->state == CONTACT_OPEN) continue;
+    contact_force(c, f);
+    contact_add(c->x, m->dim, f, now + c->wall);
+  }
+  const size_t numbers = (size_t)s->n_partners * sizeof *now / sizeof(PetscReal);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, now, (PetscMPIInt)numbers, MPIU_REAL, MPI_SUM, m->comm));
+  for (PetscInt k = 0; k < s->n_partners; ++k) s->wall[k].rate = now[k];
+  PetscCall(PetscFree(now));
+  PetscFunctionReturn(0);
+}
+
 /* What measures ask of each wall after a step of the run. */
 PetscErrorCode WallsAccount(Model *m, Explicit *e)
 {
@@ -233,8 +254,8 @@ PetscErrorCode WallsAccount(Model *m, Explicit *e)
     s->wall[k].friction += e->rubbed[k];
     s->wall[k].area = area[k];
     s->wall[k].deepest = deepest[k];
-    s->wall[k].rate = e->pushed[k];
   }
+  PetscCall(TakeRates(m));
   PetscCall(PetscFree2(area, deepest));
   PetscFunctionReturn(0);
 }
