@@ -4,15 +4,6 @@
 #include "method/method.h"
 #include "method/transfer/transfer.h"
 
-static PetscBool anything_yields(const Case *c)
-{
-  for (PetscInt m = 0; m < c->n_materials; ++m) {
-    const Law *law = c->materials[m].law ? law_find(c->materials[m].law) : NULL;
-    if (law && law->yields) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
 /* Do points hand over more than a mean, */
 static PetscBool keeps_slopes(const Case *c)
 {
@@ -36,7 +27,7 @@ static PetscBool stands_alone(const Case *c) { return case_is_static(&c->analysi
  * (docs/theory.md, section 62). What is bonded asks for more of fewer nodes then, and creeps (section 73). */
 static PetscReal share_that_follows(const Case *c)
 {
-  const PetscBool yields = anything_yields(c);
+  const PetscBool yields = specs_yield(c->n_materials, c->materials);
   if (c->spec) return 0.02;
   if (stands_alone(c)) return yields ? 0.1 : 0.02;
   if (!keeps_all(c) || yields) return 0;
@@ -51,7 +42,7 @@ static PetscReal share_that_follows(const Case *c)
  * lumped mass the transfer loses no angular momentum at all (section 16). */
 void default_stabilisation(const YamlNode *given, Case *c)
 {
-  const PetscBool yields = anything_yields(c), exact = keeps_all(c), stands = stands_alone(c);
+  const PetscBool yields = specs_yield(c->n_materials, c->materials), exact = keeps_all(c), stands = stands_alone(c);
   if (!yaml_find(given, "mass")) c->stabilisation.mass = yields ? 1 : exact ? 0 : keeps_slopes(c) ? 0.3 : 0.1;
   if (!yaml_find(given, "inertia")) c->stabilisation.inertia = yields ? 0.01 : 0;
   if (!yaml_find(given, "curvature")) c->stabilisation.curvature = exact ? 0.1 : !stands ? 0.01 : yields ? 1e-4 : 1e-3;
@@ -73,7 +64,7 @@ const char *default_transfer(const Case *c, const char **why)
   if (case_is_static(a) || a->keep_velocity || !method || !method->restores_grid) return thesis->name;
   if (a->type == ANALYSIS_EXPLICIT && a->update != EXPLICIT_MUSL) return thesis->name;
   *why = ", the default where a law yields";
-  if (anything_yields(c)) return thesis->name;
+  if (specs_yield(c->n_materials, c->materials)) return thesis->name;
   *why = ", the default with friction";
   if (implicit && case_has_contact(c, CONTACT_FRICTION)) return thesis->name;
   *why = "; consistent, which keeps more energy, goes with scheme midpoint";

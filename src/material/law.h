@@ -188,5 +188,7 @@ void materials_step(PetscInt n, Material *materials, PetscReal time, PetscReal d
 PetscReal material_confined(const Material *material);
 /* Can any of them lose its stiffness? */
 PetscBool materials_yield(PetscInt n, const Material *materials);
+/* The same before there are any, of the laws that are known. */
+PetscBool specs_yield(PetscInt n, const MaterialSpec *specs);
 /* Write the initial state of one point, n_state numbers. */
 void law_initial_state(const Law *law, PetscReal *state);

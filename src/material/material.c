@@ -223,6 +223,15 @@ PetscBool material_symmetric(const Material *m, PetscBool strength_varies)
   return law->associated(m->parameters) && (!strength_varies || law->volume_law(m->parameters) == VOLUME_LOG);
 }
 
+PetscBool specs_yield(PetscInt n, const MaterialSpec *specs)
+{
+  for (PetscInt i = 0; i < n; ++i) {
+    const Law *law = specs[i].law ? law_find(specs[i].law) : NULL;
+    if (law && law->yields) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
 PetscBool materials_yield(PetscInt n, const Material *materials)
 {
   for (PetscInt i = 0; i < n; ++i)

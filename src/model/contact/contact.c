@@ -295,8 +295,8 @@ static void settle(Model *m, PetscReal dt)
   }
 }
 
-/* Of a wall in the step: forces of the balance where they act in the middle of the way, and at its end; impulses; what is
- * taken out of those of the end; by how much the torque of what nodes remember grows from the step's start to its
+/* Of a wall in the step: forces of the balance where they act in the middle of the way, and at its end; impulses; what
+ * is taken out of those of the end; by how much the torque of what nodes remember grows from the step's start to its
  * middle. */
 enum { MIDDLE, AT_END, IMPULSES, EXCESS, REMEMBERED, PARTS };
 
@@ -317,11 +317,11 @@ static void sum_point(const Model *m, const ContactPoint *c, PetscInt n, Contact
   contact_add(moved, m->dim, last, now + REMEMBERED * n + c->wall);
 }
 
-/* Forces that nodes remember of the last step, there as if where they have come to by `part` of the half of their way. */
-static ContactSum remembered(const ContactSum *rate, const ContactSum *moved, PetscReal part)
+/* Forces that nodes remember of the last step, where these have come to by so many halves of their way. */
+static ContactSum remembered(const ContactSum *rate, const ContactSum *moved, PetscReal halves)
 {
   ContactSum sum = *rate;
-  for (int d = 0; d < 3; ++d) sum.torque[d] += part * moved->torque[d];
+  for (int d = 0; d < 3; ++d) sum.torque[d] += halves * moved->torque[d];
   return sum;
 }
 

@@ -15,10 +15,7 @@ static void warn_of_usl(const Model *m, Diag *diag)
   const Case *c = m->c;
   const Basis *basis = basis_find(c->basis.kind);
   if (c->analysis.update != EXPLICIT_USL || !basis || basis->nodes != BASIS_OF_CELLS) return;
-  for (PetscInt i = 0; i < c->n_materials; ++i) {
-    const Law *law = law_find(c->materials[i].law);
-    if (!law || law->yields) return;
-  }
+  if (specs_yield(c->n_materials, c->materials)) return;
   diag_warning(diag, "analysis.update",
                "`usl` with the functions of cells makes energy from nothing where a body ends between the grid's "
                "lines, or moves across them");

@@ -2,6 +2,29 @@
 #include "model/measure/measure.h"
 #include "model/stage/stage_private.h"
 
+PetscErrorCode PutAside(Points *points, PetscInt dim, const PetscBool *take, Points **begun)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PointsCreate(dim, 0, 0, begun));
+  PetscCall(PetscArraycpy((*begun)->components, points->components, POINT_N_REAL));
+  PetscCall(PointsCopy(points, take, *begun));
+  points->n = 0;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode PutBack(Points **begun, const char reason[256], Points *points)
+{
+  PetscBool *take;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1((*begun)->n, &take));
+  for (PetscInt p = 0; p < (*begun)->n; ++p) take[p] = PETSC_TRUE;
+  if (!reason[0]) PetscCall(PointsCopy(*begun, take, points));
+  PetscCall(PetscFree(take));
+  PetscCall(PointsDestroy(begun));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode TakeTracers(Model *m, const Tables *tables, const Case *from, char reason[256])
 {
   PetscInt *now;
@@ -16,18 +39,11 @@ PetscErrorCode TakeTracers(Model *m, const Tables *tables, const Case *from, cha
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
     if (measure_before(m->c, k, from) >= 0) now[measure_before(m->c, k, from)] = k;
   const PointsChange change = {.n_bodies = from->n_measures, .n_materials = PETSC_MAX_INT, .body = now};
-  PetscCall(PointsCreate(m->dim, 0, 0, &begun));
-  PetscCall(PetscArraycpy(begun->components, m->tracers->components, POINT_N_REAL));
-  PetscCall(PointsCopy(m->tracers, take, begun));
+  PetscCall(PutAside(m->tracers, m->dim, take, &begun));
   PetscCall(PetscFree(take));
-  m->tracers->n = 0;
   PetscCall(PointsTake(m->tracers, m->grid, tables_find(tables, "tracers"), &change, reason));
-  PetscCall(PetscMalloc1(begun->n, &take));
-  for (PetscInt p = 0; p < begun->n; ++p) take[p] = PETSC_TRUE;
-  if (!reason[0]) PetscCall(PointsCopy(begun, take, m->tracers));
+  PetscCall(PutBack(&begun, reason, m->tracers));
   for (PetscInt p = 0; p < m->tracers->n; ++p) m->tracers->id[p] = m->tracers->body[p];
-  PetscCall(PetscFree(take));
-  PetscCall(PointsDestroy(&begun));
   PetscCall(PetscFree(now));
   PetscFunctionReturn(0);
 }

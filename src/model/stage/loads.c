@@ -140,41 +140,12 @@ static void change_force(const LoadSpec *load, const LoadSpec *before, PetscInt 
                                            : (load->kind == LOAD_POINT ? 1 : area) * load->value[i];
 }
 
-static PetscErrorCode CopyAll(const Points *from, Points *to)
-{
-  PetscBool *take;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(from->n, &take));
-  for (PetscInt p = 0; p < from->n; ++p) take[p] = PETSC_TRUE;
-  PetscCall(PointsCopy(from, take, to));
-  PetscCall(PetscFree(take));
-  PetscFunctionReturn(0);
-}
-
-/* Carriers of loads that begin with their body are those that the body was drawn with: the others go. */
-static PetscErrorCode PutAside(Model *m, const PetscInt *was, Points **begun)
-{
-  Points *carriers = m->loads->carriers;
-  PetscBool *take;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(carriers->n, &take));
-  for (PetscInt p = 0; p < carriers->n; ++p) take[p] = (PetscBool)(was[carriers->body[p]] < 0);
-  PetscCall(PointsCreate(m->dim, 0, 0, begun));
-  PetscCall(PetscArraycpy((*begun)->components, carriers->components, POINT_N_REAL));
-  PetscCall(PointsCopy(carriers, take, *begun));
-  PetscCall(PetscFree(take));
-  carriers->n = 0;
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode TakeCarriers(Model *m, const Tables *tables, const Case *from, char reason[256])
 {
   const Case *c = m->c;
   Points *carriers = m->loads->carriers, *begun;
   PetscInt *now, *was;
-  PetscBool any = PETSC_FALSE;
+  PetscBool *begins, any = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < c->n_loads; ++k) any |= is_carried(c, c->loads + k);
@@ -182,10 +153,13 @@ PetscErrorCode TakeCarriers(Model *m, const Tables *tables, const Case *from, ch
   PetscCall(PetscMalloc2(from->n_loads, &now, c->n_loads, &was));
   map_loads(c, from, now, was);
   const PointsChange change = {.n_bodies = from->n_loads, .n_materials = PetscMax(1, from->n_materials), .body = now};
-  PetscCall(PutAside(m, was, &begun));
+  /* carriers of loads that begin with their body are those that the body was drawn with */
+  PetscCall(PetscMalloc1(carriers->n, &begins));
+  for (PetscInt p = 0; p < carriers->n; ++p) begins[p] = (PetscBool)(was[carriers->body[p]] < 0);
+  PetscCall(PutAside(carriers, m->dim, begins, &begun));
+  PetscCall(PetscFree(begins));
   PetscCall(PointsTake(carriers, m->grid, tables_find(tables, "carriers"), &change, reason));
-  if (!reason[0]) PetscCall(CopyAll(begun, carriers));
-  PetscCall(PointsDestroy(&begun));
+  PetscCall(PutBack(&begun, reason, carriers));
   for (PetscInt p = 0; p < carriers->n && !reason[0]; ++p) {
     const PetscInt k = carriers->body[p];
     if (was[k] < 0) continue;
