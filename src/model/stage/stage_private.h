@@ -31,8 +31,8 @@ PetscErrorCode LoadsCheck(const Case *c, const Case *from, PetscBool next, Diag 
 /* Collective. Carriers of the tables, of loads that are still there. */
 PetscErrorCode TakeCarriers(Model *model, const Tables *tables, const Case *from, char reason[256]);
 PetscErrorCode RenameLoads(const Case *c, const Case *from, Table *ended);
-/* begin.c. Before a state is taken: those of `take` are put aside, the others go; after it they follow what was taken, if no
- * reason speaks against it. */
+/* begin.c. Before a state is taken those of `take` are put aside, and the others go; after it they follow what was
+ * taken, if no reason speaks against it. */
 PetscErrorCode PutAside(Points *points, PetscInt dim, const PetscBool *take, Points **begun);
 PetscErrorCode PutBack(Points **begun, const char reason[256], Points *points);
 /* Collective. Followers of measures in the tables, and those of measures that begin with the stage. */
