@@ -22,7 +22,9 @@ LANES_INLINE void norm_of(const Lanes s[6], Lanes *norm, Lanes *inverse)
 {
   const Lanes norm2 = s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + 2.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
   lanes_sqrt(&norm2, norm);
-  for (int l = 0; l < LANES; ++l) (*inverse)[l] = (*norm)[l] > 0.0 ? 1.0 / (*norm)[l] : 0.0;
+  const LaneBits some = *norm > 0.0;
+  const Lanes full = 1.0 / *norm, none = {0};
+  lanes_select(&some, &full, &none, inverse);
 }
 
 /* Plastic multiplier, and x = 1 / (1 + H / 3 mubar) where there is flow (else 0). Rounding does not
@@ -32,12 +34,10 @@ LANES_INLINE void flow_of(const PetscReal *parameters, const Lanes *norm, const 
 {
   const PetscReal H = parameters[HARDENING], root = sqrt(2.0 / 3.0);
   const Lanes f = *norm - root * (parameters[YIELD] + H * *alpha);
-  const Lanes slope = *mubar / (*mubar + H / 3.0), full = 0.5 * f / *mubar * slope;
-  for (int l = 0; l < LANES; ++l) {
-    const int plastic = f[l] > 16.0 * PETSC_MACHINE_EPSILON * (*mubar)[l];
-    (*gamma)[l] = plastic ? full[l] : 0.0;
-    (*x)[l] = plastic ? slope[l] : 0.0;
-  }
+  const Lanes slope = *mubar / (*mubar + H / 3.0), full = 0.5 * f / *mubar * slope, none = {0};
+  const LaneBits plastic = f > 16.0 * PETSC_MACHINE_EPSILON * *mubar;
+  lanes_select(&plastic, &full, &none, gamma);
+  lanes_select(&plastic, &slope, &none, x);
 }
 
 /* c = a I x I + 2 g I_sym + r (n x I + I x n) + n x w of one point. */

@@ -8,6 +8,9 @@
 #include <math.h>
 #include <petscsys.h>
 #include <stdint.h>
+#if defined(__AVX__)
+#include <immintrin.h>
+#endif
 
 /* Who defines it as 4 before gets four: material/algebra/lanes.h */
 #ifndef LANES
@@ -31,9 +34,10 @@ LANES_INLINE void lanes_select(const LaneBits *mask, const Lanes *yes, const Lan
 
 LANES_INLINE int lanes_any(const LaneBits *mask)
 {
-#if LANES == 4 && defined(__AVX__) && defined(__GNUC__)
-  typedef long long Bits __attribute__((vector_size(32)));
-  return !__builtin_ia32_ptestz256((Bits)*mask, (Bits)*mask);
+#if LANES == 8 && defined(__AVX512F__)
+  return _mm512_test_epi64_mask((__m512i)*mask, (__m512i)*mask) != 0;
+#elif LANES == 4 && defined(__AVX__)
+  return !_mm256_testz_si256((__m256i)*mask, (__m256i)*mask);
 #elif LANES == 4
   return ((*mask)[0] | (*mask)[1] | (*mask)[2] | (*mask)[3]) != 0;
 #else
@@ -80,9 +84,16 @@ LANES_INLINE void lanes_transpose(Lanes r[LANES])
 
 LANES_INLINE void lanes_abs(const Lanes *x, Lanes *y) { *y = (Lanes)((LaneBits)*x & INT64_MAX); }
 
+/* Number by number GCC makes two halves of a wide register in memory, and waits for both to be read as one. */
 LANES_INLINE void lanes_sqrt(const Lanes *x, Lanes *y)
 {
+#if LANES == 8 && defined(__AVX512F__)
+  *y = (Lanes)_mm512_sqrt_pd((__m512d)*x);
+#elif LANES == 4 && defined(__AVX__)
+  *y = (Lanes)_mm256_sqrt_pd((__m256d)*x);
+#else
   for (int l = 0; l < LANES; ++l) (*y)[l] = sqrt((*x)[l]);
+#endif
 }
 
 LANES_INLINE void lanes_cbrt(const Lanes *x, Lanes *y)
