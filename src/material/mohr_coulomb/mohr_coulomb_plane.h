@@ -5,14 +5,15 @@
 #pragma once
 #include "material/mohr_coulomb/mohr_coulomb_lanes.h"
 
-/* A, B and z; axis[] is the direction of A, that of B is turned by a right angle. */
+/* A, B and z; B is A turned by a right angle. */
 enum { MC_A, MC_B, MC_Z };
 
 /* Where 11, 22 and 12 stand among 11, 22, 33 and 12. */
 static const int mc_plane_row[3] = {0, 1, 3};
 
 typedef struct {
-  Lanes b[4], stretch2[3], strain[3], axis[2]; /* b: 11, 22, 33, 12 */
+  Lanes b[4], stretch2[3], strain[3]; /* b: 11, 22, 33, 12 */
+  Lanes n_AA[3];                      /* 11, 22 and 12 of n_A n_A; n_B n_B has 22, 11 and -12 */
   Lanes det;
   LaneBits finite;
   LaneBits z_first, z_last; /* where z stands among the falling strains, with A before B */
@@ -35,26 +36,25 @@ LANES_INLINE PetscBool mc_plane_push(const PetscBool hoop, const Lanes f[5], con
   return PETSC_TRUE;
 }
 
-/* Squares of the stretches along A and B, A the larger, and A's direction: base/math/eigen.h's turn
- * in the plane. */
+/* Squares of the stretches along A and B, A the larger, and n_A n_A and n_B n_B in closed form; who is alike along all
+ * axes has A along x. */
 LANES_INLINE void mc_plane_axes(PlaneTrial *t)
 {
-  const Lanes none = {0}, h = 0.5 * (t->b[1] - t->b[0]), square = h * h + t->b[3] * t->b[3];
-  const LaneBits turns = (t->b[3] * t->b[3] > 1e-36 * (t->b[0] * t->b[1])) & (t->b[3] != none);
-  Lanes root = none, size;
+  const Lanes none = {0}, most = none + 0.5;
+  const Lanes middle = 0.5 * (t->b[0] + t->b[1]), h = 0.5 * (t->b[0] - t->b[1]), square = h * h + t->b[3] * t->b[3];
+  const LaneBits alike = square <= 1e-36 * (t->b[0] * t->b[1]);
+  Lanes root = none, cos, sin;
   lanes_sqrt(&square, &root);
-  lanes_abs(&h, &size);
-  Lanes tan = (Lanes)((LaneBits)(t->b[3] / (size + root)) ^ ((LaneBits)h & INT64_MIN));
-  lanes_select(&turns, &tan, &none, &tan);
-  const Lanes norm2 = 1.0 + tan * tan, first = t->b[0] - tan * t->b[3], second = t->b[1] + tan * t->b[3];
-  lanes_sqrt(&norm2, &root);
-  const Lanes c = 1.0 / root, s = tan * c, back = -s;
-  const LaneBits wrong = first < second;
-  lanes_select(&wrong, &second, &first, &t->stretch2[MC_A]);
-  lanes_select(&wrong, &first, &second, &t->stretch2[MC_B]);
-  lanes_select(&wrong, &s, &c, &t->axis[0]);
-  lanes_select(&wrong, &c, &back, &t->axis[1]);
+  t->stretch2[MC_A] = middle + root;
+  t->stretch2[MC_B] = middle - root;
   t->stretch2[MC_Z] = t->b[2];
+  const Lanes half = 0.5 / root;
+  cos = half * h;
+  sin = half * t->b[3];
+  lanes_select(&alike, &most, &cos, &cos);
+  lanes_select(&alike, &none, &sin, &t->n_AA[2]);
+  t->n_AA[0] = 0.5 + cos;
+  t->n_AA[1] = 0.5 - cos;
 }
 
 /* near: are strains small as a rule? */
@@ -109,10 +109,10 @@ LANES_INLINE void mc_plane_return(const PetscReal *p, const PlaneTrial *t, Lanes
 LANES_INLINE void mc_plane_tensor(const PlaneTrial *t, const Lanes value[3], Lanes s[4])
 {
   const Lanes rise = value[MC_A] - value[MC_B];
-  s[0] = value[MC_B] + rise * (t->axis[0] * t->axis[0]);
-  s[1] = value[MC_B] + rise * (t->axis[1] * t->axis[1]);
+  s[0] = value[MC_B] + rise * t->n_AA[0];
+  s[1] = value[MC_B] + rise * t->n_AA[1];
   s[2] = value[MC_Z];
-  s[3] = rise * (t->axis[0] * t->axis[1]);
+  s[3] = rise * t->n_AA[2];
 }
 
 /* b^e, the equivalent plastic strain and the opening, which `state` brings from before; an elastic
@@ -174,9 +174,10 @@ LANES_INLINE void mc_hoop_moduli(const PlaneTrial *t, const Lanes D[9], const La
 LANES_INLINE void mc_plane_moduli(const PetscBool hoop, const PetscReal *p, const PlaneTrial *t,
                                   const LaneBits *regions, const Lanes tau[3], Lanes c[16])
 {
-  const Lanes x = t->axis[0], y = t->axis[1], rise = tau[MC_A] - tau[MC_B], apart = t->strain[MC_A] - t->strain[MC_B];
-  const Lanes A[3] = {x * x, y * y, x * y}, B[3] = {y * y, x * x, -(x * y)}, none = {0};
-  const Lanes mixed[3] = {-2.0 * x * y, 2.0 * x * y, x * x - y * y};
+  const Lanes xx = t->n_AA[0], yy = t->n_AA[1], xy = t->n_AA[2], rise = tau[MC_A] - tau[MC_B],
+              apart = t->strain[MC_A] - t->strain[MC_B];
+  const Lanes A[3] = {xx, yy, xy}, B[3] = {yy, xx, -xy}, none = {0};
+  const Lanes mixed[3] = {-2.0 * xy, 2.0 * xy, xx - yy};
   const LaneBits elastic = (*regions == MC_ELASTIC) | (t->z_first & (*regions == MC_CUT_PLANE));
   Lanes D[9], AA, AB, BA, BB, r, coth;
   mc_moduli_lanes(p, regions, D);
