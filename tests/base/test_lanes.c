@@ -1,11 +1,13 @@
-/* Logarithm, exponential and eigenvalues of eight numbers at once, against the scalar ones. */
+/* Logarithm, exponential, eigenvalues and functions of tensors, eight at once, against the scalar ones. */
 #include "../conformance/random.h"
 #include <float.h>
+#include <string.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <cmocka.h>
 #include "base/math/eigen_lanes.h"
+#include "base/math/projections_lanes.h"
 
 /* Distance in units of the last place of the exact value. */
 static PetscReal ulps(PetscReal value, long double exact)
@@ -107,9 +109,59 @@ static void test_eigen(void **state)
   }
 }
 
+static PetscReal exact(PetscReal x) { return x; }
+static PetscReal bent(PetscReal x) { return fmax(x, 1.0) * x * x; }
+
+/* One lane: f(s) by what the closed form gives, and by the axes of base/math/eigen.h. */
+static void check_function(PetscReal (*f)(PetscReal), int l, const PetscReal s[6], const Lanes values[3],
+                           const Lanes first[6], const Lanes last[6])
+{
+  PetscReal value[3], v[9];
+  sym_eigen(s, value, v);
+  for (int i = 0; i < 6; ++i) {
+    const int r = 3 * voigt_row[i], c = 3 * voigt_column[i];
+    PetscReal expected = 0;
+    for (int a = 0; a < 3; ++a) expected += f(value[a]) * v[r + a] * v[c + a];
+    const PetscReal middle = f(values[1][l]), high = f(values[0][l]) - middle, low = f(values[2][l]) - middle;
+    const PetscReal found = (i < 3 ? middle : 0) + high * first[i][l] + low * last[i][l];
+    assert_true(fabs(found - expected) <= 2e-14);
+  }
+}
+
+/* The closed form: tensors of all kinds, with pairs and triples of eigenvalues that are alike to rounding. */
+static void test_projections(void **state)
+{
+  (void)state;
+  Random random = {6};
+  for (int k = 0; k < 40000; ++k) {
+    PetscReal s[LANES][6], q[9];
+    Lanes tensor[6], values[3], first[6], last[6];
+    for (int l = 0; l < LANES; ++l) {
+      const PetscReal wide = pow(10, -random_real(&random, 0, 18)),
+                      near = k % 50 ? pow(10, -random_real(&random, 0, 18)) : 0, third[4] = {0, near, 0.4, 0};
+      const PetscReal x[6] = {1 + wide, 1 + (l % 4 ? wide - near : 0), 1 - third[l % 4]};
+      random_rotation(&random, q);
+      if (l == 3) memcpy(s[l], x, sizeof x);
+      else sym_push_forward(q, x, s[l]);
+      if (l == 2) s[l][4] = s[l][5] = 0;
+      for (int i = 0; i < 6; ++i) tensor[i][l] = s[l][i];
+    }
+    lanes_sym_projections(tensor, values, first, last);
+    for (int l = 0; l < LANES; ++l) {
+      PetscReal value[3], v[9];
+      sym_eigen(s[l], value, v);
+      for (int a = 0; a < 3; ++a) assert_true(fabs(values[a][l] - value[a]) <= 4e-15);
+      assert_true(values[0][l] >= values[1][l] && values[1][l] >= values[2][l]);
+      check_function(exact, l, s[l], values, first, last);
+      check_function(bent, l, s[l], values, first, last);
+    }
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_log), cmocka_unit_test(test_exp),
-                                     cmocka_unit_test(test_ends), cmocka_unit_test(test_eigen)};
+                                     cmocka_unit_test(test_ends), cmocka_unit_test(test_eigen),
+                                     cmocka_unit_test(test_projections)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

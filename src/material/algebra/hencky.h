@@ -30,23 +30,60 @@ LANES_INLINE void hencky_push(PetscInt n, const PetscReal *dF, const Lanes old[6
   hencky_push_by(f, old, t);
 }
 
-LANES_INLINE void hencky_spectrum(HenckyTrial *t)
+/* What is no tensor of finite size becomes 1. */
+LANES_INLINE void hencky_check(HenckyTrial *t)
 {
   const Lanes one = (Lanes){0} + 1.0, none = {0};
-  Lanes v[9], size, sum = none;
+  Lanes size, sum = none;
   for (int k = 0; k < 6; ++k) {
     lanes_abs(&t->b[k], &size);
     sum += size;
   }
   t->finite = (sum * sum <= PETSC_MAX_REAL) & (t->det <= PETSC_MAX_REAL) & (t->det > 0.0);
   for (int k = 0; k < 6; ++k) lanes_select(&t->finite, &t->b[k], k < 3 ? &one : &none, &t->b[k]);
+}
+
+LANES_INLINE void hencky_axes(HenckyTrial *t)
+{
+  Lanes v[9];
   lanes_sym_eigen(t->b, t->stretch2, v);
+  lanes_principal_basis(v, t->basis);
+}
+
+/* near: are strains small as a rule? */
+LANES_INLINE void hencky_strains(const PetscBool near, HenckyTrial *t)
+{
   t->finite &= t->stretch2[2] > 0.0; /* lost to rounding: stretches 1e8 apart */
   for (int a = 0; a < 3; ++a) {
-    lanes_log(&t->stretch2[a], &t->strain[a]);
+    if (near) lanes_log_near(&t->stretch2[a], &t->strain[a]);
+    else lanes_log(&t->stretch2[a], &t->strain[a]);
     t->strain[a] *= 0.5;
   }
-  lanes_principal_basis(v, t->basis);
+}
+
+LANES_INLINE void hencky_spectrum(HenckyTrial *t)
+{
+  hencky_check(t);
+  hencky_axes(t);
+  hencky_strains(PETSC_FALSE, t);
+}
+
+/* The same for what needs no tangent: of the basis only n_1 n_1 and n_3 n_3, and in closed form, whose errors are some
+ * 1e-16 of the largest stretch; where that is more than a few times the smallest, by axes. */
+LANES_INLINE void hencky_projections(HenckyTrial *t)
+{
+  HenckyTrial turned;
+  hencky_check(t);
+  lanes_sym_projections(t->b, t->stretch2, t->basis, t->basis + 12);
+  const LaneBits apart = ~(t->stretch2[2] > 0.1 * t->stretch2[0]);
+  if (lanes_any(&apart)) {
+    for (int k = 0; k < 6; ++k) turned.b[k] = t->b[k];
+    hencky_axes(&turned);
+    for (int a = 0; a < 3; ++a) lanes_select(&apart, &turned.stretch2[a], &t->stretch2[a], &t->stretch2[a]);
+    for (int k = 0; k < 6; ++k) lanes_select(&apart, &turned.basis[k], &t->basis[k], &t->basis[k]);
+    for (int k = 12; k < 18; ++k) lanes_select(&apart, &turned.basis[k], &t->basis[k], &t->basis[k]);
+  }
+  hencky_strains(PETSC_TRUE, t);
 }
 
 /* c of n points from D_AB = d tau_A / d eps_B and the divided differences r of 12, 23, 13. */
@@ -93,14 +130,15 @@ typedef void (*HenckyLaw)(const PetscReal *parameters, PetscBool moduli, const L
                           Lanes *after, HenckyReturn *r);
 
 /* An elastic point keeps its trial b to the last bit. */
-LANES_INLINE void hencky_state(const HenckyTrial *t, const HenckyReturn *r, Lanes b[6])
+LANES_INLINE void hencky_state(const PetscBool near, const HenckyTrial *t, const HenckyReturn *r, Lanes b[6])
 {
   Lanes stretch2[3], flown[6];
   for (int k = 0; k < 6; ++k) b[k] = t->b[k];
   if (!lanes_any(&r->plastic)) return;
   for (int a = 0; a < 3; ++a) {
     const Lanes twice = 2.0 * r->elastic[a];
-    lanes_exp(&twice, &stretch2[a]);
+    if (near) lanes_exp_near(&twice, &stretch2[a]);
+    else lanes_exp(&twice, &stretch2[a]);
   }
   lanes_principal_tensor(stretch2, t->basis, flown);
   for (int k = 0; k < 6; ++k) lanes_select(&r->plastic, &flown[k], &b[k], &b[k]);
@@ -120,7 +158,7 @@ LANES_INLINE LawStatus hencky_update(HenckyLaw law, int scalars, const PetscReal
   law(p, c != NULL, t.strain, before + 6, now + 6, &r);
   lanes_principal_tensor(r.tau, t.basis, stress);
   if (state) {
-    hencky_state(&t, &r, now);
+    hencky_state(PETSC_FALSE, &t, &r, now);
     lanes_store(6 + scalars, n, now, state);
   }
   lanes_store(6, n, stress, tau);
@@ -139,10 +177,10 @@ LANES_INLINE LawStatus hencky_march(HenckyLaw law, int scalars, const PetscBool 
   lanes_march_dF(plane, march, f);
   lanes_load_apart(6 + scalars, march->stride, n, march->state, before);
   hencky_push_by(f, before, &t);
-  hencky_spectrum(&t);
+  hencky_projections(&t);
   law(p, PETSC_FALSE, t.strain, before + 6, now + 6, &r);
   lanes_principal_tensor(r.tau, t.basis, stress);
-  hencky_state(&t, &r, now);
+  hencky_state(PETSC_TRUE, &t, &r, now);
   lanes_store_apart(6 + scalars, march->stride, n, now, march->state);
   lanes_march_tau(plane, stress, march);
   const LaneBits good = t.finite & r.good, bad = ~good;

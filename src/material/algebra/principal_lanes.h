@@ -2,6 +2,7 @@
 #pragma once
 #include "material/algebra/lanes.h"
 #include "base/math/eigen_lanes.h"
+#include "base/math/projections_lanes.h"
 
 LANES_INLINE void lanes_principal_basis(const Lanes v[9], Lanes basis[36])
 {

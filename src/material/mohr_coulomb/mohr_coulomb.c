@@ -34,8 +34,9 @@ LANES_INLINE void trial_lanes(PetscInt n, const PetscReal *dF, const Lanes befor
 
 /* b^e of the returned stress, equivalent plastic strain and opening. An elastic point keeps its
  * trial b to the last bit. */
-LANES_INLINE void state_lanes(const PetscReal *p, const HenckyTrial *t, const Lanes before[N_STATE], const Lanes tau[3],
-                              const LaneBits *regions, Lanes state[N_STATE])
+LANES_INLINE void state_lanes(const PetscBool near, const PetscReal *p, const HenckyTrial *t,
+                              const Lanes before[N_STATE], const Lanes tau[3], const LaneBits *regions,
+                              Lanes state[N_STATE])
 {
   const Lanes share = p[MC_LAMBDA] / (3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU]) * (tau[0] + tau[1] + tau[2]), none = {0};
   const LaneBits plastic = *regions != MC_ELASTIC;
@@ -49,7 +50,8 @@ LANES_INLINE void state_lanes(const PetscReal *p, const HenckyTrial *t, const La
     const Lanes elastic = (tau[a] - share) / (2.0 * p[MC_MU]), twice = 2.0 * elastic;
     const Lanes plastic_strain = t->strain[a] - elastic - state[7] / 3.0;
     norm2 += plastic_strain * plastic_strain;
-    lanes_exp(&twice, &stretch2[a]);
+    if (near) lanes_exp_near(&twice, &stretch2[a]);
+    else lanes_exp(&twice, &stretch2[a]);
   }
   lanes_principal_tensor(stretch2, t->basis, b);
   norm2 /= 1.0 + p[MC_M] * p[MC_M];
@@ -91,7 +93,7 @@ LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscR
   mc_return_lanes(p, t.strain, principal, &regions);
   lanes_principal_tensor(principal, t.basis, stress);
   if (state) {
-    state_lanes(p, &t, before, principal, &regions, now);
+    state_lanes(PETSC_FALSE, p, &t, before, principal, &regions, now);
     lanes_store(N_STATE, n, now, state);
   }
   lanes_store(6, n, stress, tau);
@@ -195,11 +197,11 @@ LANES_INLINE LawStatus march_space_lanes(const PetscReal *p, PetscInt n, const L
   lanes_load_apart(N_STATE, march->stride, n, march->state, before);
   hencky_push_by(f, before, &t);
   mc_with_opening(&before[7], 6, t.b);
-  hencky_spectrum(&t);
+  hencky_projections(&t);
   mc_return_lanes(p, t.strain, principal, &regions);
   lanes_principal_tensor(principal, t.basis, stress);
   lanes_march_tau(PETSC_FALSE, stress, march);
-  state_lanes(p, &t, before, principal, &regions, now);
+  state_lanes(PETSC_TRUE, p, &t, before, principal, &regions, now);
   lanes_store_apart(N_STATE, march->stride, n, now, march->state);
   const LaneBits bad = ~t.finite;
   return lanes_any(&bad) ? lanes_halt(N_STATE, 6, &t.finite, &t.finite, &t.det, n, before, march) : LAW_OK;
