@@ -99,7 +99,7 @@ PetscErrorCode ExplicitCritical(const Model *m, PetscReal *critical, PetscReal *
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0, n; p < m->points->n; p += n) {
-    n = batch_points(m->points, p);
+    n = batch_points(m, p);
     tangents(m, p, n, tau, c);
     for (PetscInt k = 0; k < n; ++k) {
       const PetscReal *v = point_real(m->points, POINT_V, p + k);

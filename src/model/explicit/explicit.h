@@ -205,10 +205,12 @@ static inline LawStatus batch_stress(const Model *m, PetscInt first, PetscInt n,
   return law_march(material->law, m->dim == 2, material->parameters, n, &march);
 }
 /* Points from `first` on that one call of their law takes. */
-static inline PetscInt batch_points(const Points *points, PetscInt first)
+static inline PetscInt batch_points(const Model *m, PetscInt first)
 {
-  PetscInt n = 1;
-  while (n < LAW_BATCH && first + n < points->n && points->material[first + n] == points->material[first]) ++n;
+  const Points *points = m->points;
+  const PetscInt most = PetscMin(LAW_BATCH, points->n - first);
+  PetscInt n = m->c->n_materials == 1 ? most : 1;
+  while (n < most && points->material[first + n] == points->material[first]) ++n;
   return n;
 }
 

@@ -3,6 +3,9 @@
 #include "model/explicit/explicit.h"
 #include "model/measure/measure.h"
 
+/* Loops over nodes are compiled for each number of axes: they are a tenth of a substep. */
+#define KERNEL static inline __attribute__((always_inline))
+
 #define HARDLY 0.003 /* of the heaviest node of a cell: less carries nothing there */
 
 PetscErrorCode NodesShare(const Model *m, PetscInt components, PetscReal *values)
@@ -108,28 +111,34 @@ static PetscErrorCode AddLoads(Model *m, Explicit *e)
   PetscFunctionReturn(0);
 }
 
+/* Velocities at the end of the substep, and what forces give. */
+KERNEL void move(const int dim, const Model *m, const Explicit *e)
+{
+  const PetscReal kept = 1 - e->fade;
+  for (PetscInt k = 0; k < e->n_active; ++k) {
+    const PetscInt node = e->active[k];
+    const PetscReal *s = e->sum + node * (1 + 2 * dim), mass = s[0], inverse = mass > 1e-300 ? 1 / mass : 0;
+    PetscReal *v = e->motion + node * 2 * dim;
+    for (int d = 0; d < dim; ++d) {
+      const PetscReal load = mass * e->g[d] + (e->loaded ? m->nodes->external[node * dim + d] : 0);
+      const PetscReal gain = e->act * inverse * (s[1 + dim + d] + load);
+      v[d] = kept * inverse * s[1 + d] + gain;
+      v[dim + d] = gain;
+    }
+  }
+}
+
 PetscErrorCode NodesMove(Model *m, Explicit *e)
 {
-  const PetscInt dim = m->dim;
-
   PetscFunctionBeginUser;
   gravity_at(m->c, e->time, e->g);
   if (e->box && m->c->n_loads) PetscCall(Carry(m));
   PetscCall(Touch(m, e));
   PetscCall(AddLoads(m, e));
   PetscCall(SumsGive(m, e));
-  if (e->loaded) PetscCall(NodesGive(m, e, dim, m->nodes->external));
-  for (PetscInt k = 0; k < e->n_active; ++k) {
-    const PetscInt node = e->active[k];
-    const PetscReal *s = e->sum + node * e->width, mass = s[0], inverse = mass > 1e-300 ? 1 / mass : 0;
-    PetscReal *v = e->motion + node * 2 * dim;
-    for (PetscInt d = 0; d < dim; ++d) {
-      const PetscReal load = mass * e->g[d] + (e->loaded ? m->nodes->external[node * dim + d] : 0);
-      const PetscReal gain = e->act * inverse * (s[1 + dim + d] + load), kept = (1 - e->fade) * inverse * s[1 + d];
-      v[d] = kept + gain;
-      v[dim + d] = gain;
-    }
-  }
+  if (e->loaded) PetscCall(NodesGive(m, e, m->dim, m->nodes->external));
+  if (m->dim == 2) move(2, m, e);
+  else move(3, m, e);
   PetscFunctionReturn(0);
 }
 
@@ -179,36 +188,47 @@ void nodes_hold(Model *m, Explicit *e)
   }
 }
 
-/* Of gravity and loads, along the way that points go. */
-static PetscReal work_of_loads(const Model *m, const Explicit *e, PetscInt node)
+/* Momentum becomes velocity; without the second mapping strain takes that of the substep's end. */
+KERNEL void strain(const int dim, const PetscBool again, Explicit *e)
 {
-  const PetscReal mass = e->sum[node * e->width], *v = explicit_way(e, m->dim, node);
-  PetscReal work = 0;
-  for (PetscInt d = 0; d < m->dim; ++d)
-    work += (mass * e->g[d] + (e->loaded ? m->nodes->external[node * m->dim + d] : 0)) * v[d];
-  return e->dt * work;
+  for (PetscInt k = 0; k < e->n_active; ++k) {
+    const PetscInt node = e->active[k];
+    const PetscReal mass = e->sum[node * (1 + 2 * dim)], inverse = mass > 1e-300 ? 1 / mass : 0;
+    PetscReal *v = e->straining + node * dim;
+    for (int d = 0; d < dim; ++d) v[d] = again ? v[d] * inverse : e->motion[node * 2 * dim + d];
+  }
+}
+
+/* Work of gravity and loads, along the way that points go. */
+KERNEL void work(const int dim, const Model *m, Explicit *e)
+{
+  PetscReal power = 0;
+  for (PetscInt k = 0; k < e->n_active; ++k) {
+    const PetscInt node = e->active[k];
+    if (node >= m->grid->n_owned) continue;
+    const PetscReal mass = e->sum[node * (1 + 2 * dim)], *v = explicit_way(e, dim, node);
+    for (int d = 0; d < dim; ++d)
+      power += (mass * e->g[d] + (e->loaded ? m->nodes->external[node * dim + d] : 0)) * v[d];
+  }
+  e->external += e->dt * power;
 }
 
 PetscErrorCode NodesStrain(const Model *m, Explicit *e)
 {
   const PetscInt dim = m->dim;
   const PetscBool again = m->c->analysis.update == EXPLICIT_MUSL;
+  PetscReal change[3];
 
   PetscFunctionBeginUser;
   if (again) PetscCall(NodesShare(m, dim, e->straining));
   if (again) PetscCall(MomentumGive(m, e, e->straining));
-  for (PetscInt k = 0; k < e->n_active; ++k) {
-    const PetscInt node = e->active[k];
-    const PetscReal mass = e->sum[node * e->width], inverse = mass > 1e-300 ? 1 / mass : 0;
-    PetscReal *v = e->straining + node * dim;
-    for (PetscInt d = 0; d < dim; ++d) v[d] = again ? v[d] * inverse : e->motion[node * 2 * dim + d];
-  }
-  PetscReal change[3];
+  if (dim == 2) strain(2, again, e);
+  else strain(3, again, e);
   for (const Held *h = e->held; again && h < e->held + e->n_held; ++h)
     (void)hold(m, h, e->straining + h->node * dim, change);
   if (again) PetscCall(NodesTake(m, e, dim, e->straining));
-  for (PetscInt k = 0; k < e->n_active; ++k)
-    if (e->active[k] < m->grid->n_owned) e->external += work_of_loads(m, e, e->active[k]);
+  if (dim == 2) work(2, m, e);
+  else work(3, m, e);
   PetscFunctionReturn(0);
 }
 
@@ -236,6 +256,16 @@ static PetscErrorCode Turn(Model *m, const Explicit *e)
   PetscFunctionReturn(0);
 }
 
+/* `width` numbers of each node start anew. */
+KERNEL void forget(const int width, const Explicit *e, PetscReal *values)
+{
+  for (PetscInt k = 0; k < e->n_active; ++k) {
+    PetscReal *value = values + e->active[k] * width;
+#pragma GCC unroll 8
+    for (int i = 0; i < width; ++i) value[i] = 0;
+  }
+}
+
 PetscErrorCode NodesCarry(Model *m, Explicit *e)
 {
   const PetscInt dim = m->dim;
@@ -254,13 +284,13 @@ PetscErrorCode NodesCarry(Model *m, Explicit *e)
   PetscCall(Turn(m, e));
   if (tracers) PetscCall(Follow(m, m->tracers));
   if (m->c->n_loads) PetscCall(Follow(m, m->loads->carriers));
-  for (PetscInt k = 0; k < e->n_active; ++k)
-    for (PetscInt i = 0; i < e->width; ++i) e->sum[e->active[k] * e->width + i] = 0;
+  if (dim == 2) forget(1 + 2 * 2, e, e->sum);
+  else forget(1 + 2 * 3, e, e->sum);
   PetscFunctionReturn(0);
 }
 
 void nodes_forget(const Model *m, Explicit *e)
 {
-  for (PetscInt k = 0; k < e->n_active; ++k)
-    for (PetscInt d = 0; d < m->dim; ++d) e->straining[e->active[k] * m->dim + d] = 0;
+  if (m->dim == 2) forget(2, e, e->straining);
+  else forget(3, e, e->straining);
 }

@@ -20,13 +20,6 @@ KERNEL void locate(const Lattice *l, PetscInt n, const PetscReal *x, Place *plac
   }
 }
 
-/* N of four points at each of their nodes. */
-KERNEL void shapes(const Place *place, PetscInt k, Four N[4])
-{
-  const Four x = FOUR_OF(place->at[0] + k), y = FOUR_OF(place->at[1] + k);
-  for (int i = 0; i < 4; ++i) N[i] = (i & 1 ? x : 1 - x) * (i & 2 ? y : 1 - y);
-}
-
 /* Functions along each axis of one point at the four nodes. */
 KERNEL void along(const Place *place, PetscInt k, Four N[2])
 {
@@ -48,10 +41,32 @@ KERNEL void bring(const int n, const Lattice *l, int32_t cell, Four *sum, PetscR
   for (int i = 0; i < n; ++i) sum[i] = (Four){0};
 }
 
-/* Of the cell's nodes: velocity and gain, row by row. */
-KERNEL void fetch_motion(const Explicit *e, const Lattice *l, int32_t cell, Four motion[4])
+/* Linear functions of a cell: f = start + x along_x + y (along_y + x twist), of its nodes' values. */
+typedef struct {
+  Four start, along_x, along_y, twist;
+} Bilinear;
+
+KERNEL void bilinear_of(const Four value[4], Bilinear *f)
 {
-  for (int k = 0; k < 4; ++k) motion[k] = FOUR(e->motion + l->number[cell + l->corner[k]] * 4);
+  f->start = value[0];
+  f->along_x = value[1] - value[0];
+  f->along_y = value[2] - value[0];
+  f->twist = (value[3] - value[2]) - f->along_x;
+}
+
+/* At point k of a batch. */
+KERNEL void bilinear_at(const Bilinear *f, const Place *place, PetscInt k, Four *value)
+{
+  const PetscReal x = place->at[0][k], y = place->at[1][k];
+  *value = (f->start + x * f->along_x) + y * (f->along_y + x * f->twist);
+}
+
+/* Velocity and gain. */
+KERNEL void fetch_motion(const Explicit *e, const Lattice *l, int32_t cell, Bilinear *motion)
+{
+  Four value[4];
+  for (int k = 0; k < 4; ++k) value[k] = FOUR_OF(e->motion + l->number[cell + l->corner[k]] * 4);
+  bilinear_of(value, motion);
 }
 
 /* What the gradient that point p, the k-th, carries adds to the momentum of the nodes: m N G (x_I - x_p). */
@@ -114,16 +129,34 @@ void plane_gather(const Model *m, Explicit *e)
 /* Velocity and gain of the nodes where the points of a batch are. */
 KERNEL void feel(const Explicit *e, const Place *place, PetscInt n, Four *felt)
 {
-  PetscReal N[4][LAW_BATCH];
-  Four motion[4] = {{0}}, shape[4];
+  Bilinear motion = {.start = {0}};
   int32_t cell = -1;
-  for (PetscInt k = 0; k < n; k += 4) {
-    shapes(place, k, shape);
-    for (int i = 0; i < 4; ++i) FOUR(N[i] + k) = shape[i];
-  }
   for (PetscInt k = 0; k < n; ++k) {
-    if (place->cell[k] != cell) fetch_motion(e, &e->lattice, cell = place->cell[k], motion);
-    felt[k] = (N[0][k] * motion[0] + N[1][k] * motion[1]) + (N[2][k] * motion[2] + N[3][k] * motion[3]);
+    if (place->cell[k] != cell) fetch_motion(e, &e->lattice, cell = place->cell[k], &motion);
+    bilinear_at(&motion, place, k, felt + k);
+  }
+}
+
+typedef struct {
+  Four sum[2], damped, felt[LAW_BATCH];
+  PetscReal momentum[2 * LAW_BATCH];
+  int32_t cell;
+  Place place;
+} Gain;
+
+KERNEL void gain_some(const PetscBool again, const Points *points, PetscInt first, PetscInt n, Explicit *e, Gain *w)
+{
+  Four N[2];
+  locate(&e->lattice, n, point_real(points, POINT_X, first), &w->place);
+  feel(e, &w->place, n, w->felt);
+  speed_up_all(points, first, n, e, w->felt, w->momentum, &w->damped);
+  for (PetscInt k = 0; again && k < n; ++k) {
+    if (w->place.cell[k] != w->cell) bring(2, &e->lattice, w->cell, w->sum, e->straining);
+    w->cell = w->place.cell[k];
+    along(&w->place, k, N);
+    const Four weight = N[0] * N[1];
+    for (int d = 0; d < 2; ++d) w->sum[d] += w->momentum[2 * k + d] * weight;
+    if (e->slopes) lean(&e->lattice, points, first + k, explicit_half(e), &w->place, k, &weight, w->sum);
   }
 }
 
@@ -131,100 +164,90 @@ void plane_gain(const Model *m, Explicit *e)
 {
   const Points *points = m->points;
   const PetscBool again = m->c->analysis.update == EXPLICIT_MUSL;
-  PetscReal momentum[2 * LAW_BATCH];
-  Four sum[2] = {{0}}, damped = {0}, felt[LAW_BATCH] = {{0}}, N[2];
-  int32_t cell = -1;
-  Place place;
+  Gain w = {.cell = -1};
   for (PetscInt first = 0; first < points->n; first += LAW_BATCH) {
     const PetscInt n = PetscMin(LAW_BATCH, points->n - first);
-    locate(&e->lattice, n, point_real(points, POINT_X, first), &place);
-    feel(e, &place, n, felt);
-    speed_up_all(points, first, n, e, felt, momentum, &damped);
-    for (PetscInt k = 0; again && k < n; ++k) {
-      if (place.cell[k] != cell) bring(2, &e->lattice, cell, sum, e->straining);
-      cell = place.cell[k];
-      along(&place, k, N);
-      const Four weight = N[0] * N[1];
-      for (int d = 0; d < 2; ++d) sum[d] += momentum[2 * k + d] * weight;
-      if (e->slopes) lean(&e->lattice, points, first + k, explicit_half(e), &place, k, &weight, sum);
-    }
+    if (n == LAW_BATCH) gain_some(again, points, first, LAW_BATCH, e, &w);
+    else gain_some(again, points, first, n, e, &w);
   }
-  if (again) bring(2, &e->lattice, cell, sum, e->straining);
-  e->damped += (damped[0] + damped[1]) + (damped[2] + damped[3]);
+  if (again) bring(2, &e->lattice, w.cell, w.sum, e->straining);
+  e->damped += (w.damped[0] + w.damped[1]) + (w.damped[2] + w.damped[3]);
 }
 
-/* What strains the points of a cell: gradient = constant + bilinear {y, y, x, x}, of rows xx yx xy yy. */
+/* What strains the points of a cell: gradient = constant + bilinear {y, y, x, x}, of rows xx yx xy yy; the way that
+ * they go, twice; and the velocity towards a ring's outside, in the first component. */
 typedef struct {
-  Four motion[4], constant, bilinear;
-  PetscReal first[4]; /* component x of the nodes' velocities */
+  Four constant, bilinear;
+  Bilinear way, out;
 } Flow;
 
-KERNEL void fetch_flow(const Explicit *e, const Lattice *l, int32_t cell, Flow *f)
+KERNEL void fetch_flow(const PetscBool hoop, const Explicit *e, const Lattice *l, int32_t cell, Flow *f)
 {
   const Four per_length = {l->per_length[0], l->per_length[0], l->per_length[1], l->per_length[1]};
-  const PetscReal *v[4];
+  Four way[4], v[4];
   for (int k = 0; k < 4; ++k) {
     const PetscInt node = l->number[cell + l->corner[k]];
-    const PetscReal *way = explicit_way(e, 2, node);
-    f->motion[k] = (Four){way[0], way[1], way[0], way[1]};
-    v[k] = e->straining + node * 2;
+    const PetscReal *to = explicit_way(e, 2, node), *by = e->straining + node * 2;
+    way[k] = (Four){to[0], to[1], to[0], to[1]};
+    v[k] = (Four){by[0], by[1], by[0], by[1]};
   }
-  for (int d = 0; d < 2; ++d) {
-    const PetscReal twist = (v[3][d] - v[2][d]) - (v[1][d] - v[0][d]);
-    f->constant[d] = v[1][d] - v[0][d];
-    f->constant[2 + d] = v[2][d] - v[0][d];
-    f->bilinear[d] = f->bilinear[2 + d] = twist;
-  }
-  f->constant *= e->dt * per_length;
-  f->bilinear *= e->dt * per_length;
-  for (int k = 0; k < 4; ++k) f->first[k] = v[k][0];
+  const Four along_x = v[1] - v[0], along_y = v[2] - v[0], twist = (v[3] - v[2]) - along_x;
+  f->constant = e->dt * per_length * __builtin_shufflevector(along_x, along_y, 0, 1, 4, 5);
+  f->bilinear = e->dt * per_length * twist;
+  bilinear_of(way, &f->way);
+  if (hoop) bilinear_of(v, &f->out);
 }
 
 KERNEL void flow_past(const PetscBool hoop, const Points *points, PetscInt first, PetscInt n, const Explicit *e,
                       const Place *place, Strain *s)
 {
-  PetscReal N[4][LAW_BATCH];
-  Four shape[4];
-  Flow f = {0};
+  Flow f = {.constant = {0}};
+  Four out;
   int32_t cell = -1;
-  for (PetscInt k = 0; k < n; k += 4) {
-    shapes(place, k, shape);
-    for (int i = 0; i < 4; ++i) FOUR(N[i] + k) = shape[i];
-  }
   for (PetscInt k = 0; k < n; ++k) {
     const PetscReal x = place->at[0][k], y = place->at[1][k];
-    if (place->cell[k] != cell) fetch_flow(e, &e->lattice, cell = place->cell[k], &f);
+    if (place->cell[k] != cell) fetch_flow(hoop, e, &e->lattice, cell = place->cell[k], &f);
     s->A[k] = f.constant + f.bilinear * (Four){y, y, x, x};
-    s->move[k] = (N[0][k] * f.motion[0] + N[1][k] * f.motion[1]) + (N[2][k] * f.motion[2] + N[3][k] * f.motion[3]);
-    if (hoop) {
-      const PetscReal v = N[0][k] * f.first[0] + N[1][k] * f.first[1] + N[2][k] * f.first[2] + N[3][k] * f.first[3];
-      s->ring[k] = e->dt * v / *point_real(points, POINT_X, first + k);
-    }
+    bilinear_at(&f.way, place, k, s->move + k);
+    if (!hoop) continue;
+    bilinear_at(&f.out, place, k, &out);
+    s->ring[k] = e->dt * out[0] / *point_real(points, POINT_X, first + k);
   }
   rest_of_batch(n, s);
 }
 
-KERNEL void strain(const PetscBool hoop, const Model *m, Explicit *e)
-{
-  Points *points = m->points;
-  Four sum[5] = {{0}};
-  int32_t cell = -1;
+/* What a walk hands from batch to batch: what the nodes of a cell are to get, and room. */
+typedef struct {
+  Four sum[5];
+  int32_t cell;
   Place place;
   Strain s;
-  Batch b = {.dF = {{0}}};
+  Batch b;
   Given g;
-  batch_begin(&b);
-  for (PetscInt first = 0, n; first < points->n; first += n) {
-    n = batch_points(points, first);
-    locate(&e->lattice, n, point_real(points, POINT_X, first), &place);
-    flow_past(hoop, points, first, n, e, &place, &s);
-    strain_batch(hoop, m, e, first, n, &s, &b, &g);
-    if (e->ends) continue;
-    weigh(points, first, n, &g);
-    locate(&e->lattice, n, point_real(points, POINT_X, first), &place);
-    give(hoop, points, first, n, &place, &g, &cell, sum, e);
+} Walk;
+
+KERNEL void strain_some(const PetscBool hoop, const Model *m, Explicit *e, PetscInt first, PetscInt n, Walk *w)
+{
+  const Points *points = m->points;
+  locate(&e->lattice, n, point_real(points, POINT_X, first), &w->place);
+  flow_past(hoop, points, first, n, e, &w->place, &w->s);
+  strain_batch(hoop, m, e, first, n, &w->s, &w->b, &w->g);
+  if (e->ends) return;
+  weigh(points, first, n, &w->g);
+  locate(&e->lattice, n, point_real(points, POINT_X, first), &w->place);
+  give(hoop, points, first, n, &w->place, &w->g, &w->cell, w->sum, e);
+}
+
+KERNEL void strain(const PetscBool hoop, const Model *m, Explicit *e)
+{
+  Walk w = {.cell = -1};
+  batch_begin(&w.b);
+  for (PetscInt first = 0, n; first < m->points->n; first += n) {
+    n = batch_points(m, first);
+    if (n == LAW_BATCH) strain_some(hoop, m, e, first, LAW_BATCH, &w);
+    else strain_some(hoop, m, e, first, n, &w);
   }
-  bring(5, &e->lattice, cell, sum, e->sum);
+  bring(5, &e->lattice, w.cell, w.sum, e->sum);
 }
 
 void plane_strain(const Model *m, Explicit *e)

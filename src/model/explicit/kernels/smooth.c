@@ -318,7 +318,7 @@ KERNEL void strain(const PetscBool hoop, const Model *m, Explicit *e)
   Given g;
   batch_begin(&b);
   for (PetscInt first = 0, n; first < points->n; first += n) {
-    n = batch_points(points, first);
+    n = batch_points(m, first);
     locate(hoop, &e->lattice, points, first, n, &place);
     flow_past(hoop, points, first, n, e, &place, &s);
     strain_batch(hoop, m, e, first, n, &s, &b, &g);

@@ -214,7 +214,7 @@ void space_gain(const Model *m, Explicit *e)
   const Points *points = m->points;
   const PetscBool again = m->c->analysis.update == EXPLICIT_MUSL;
   const PetscReal half = explicit_half(e);
-  Four motion[8], flow[8] = {{0}}, gained, seen, momentum[LAW_BATCH];
+  Four motion[8], flow[8] = {{0}}, gained, seen = {0}, momentum[LAW_BATCH];
   PetscReal damped = 0;
   Shapes s;
   for (PetscInt first = 0; first < points->n; first += LAW_BATCH) {
@@ -226,7 +226,7 @@ void space_gain(const Model *m, Explicit *e)
       if (e->slopes) fetch(&e->lattice, s.place.cell[k], 6, e->motion, flow);
       for (PetscInt i = k; i < end; ++i) {
         mean(&s, i, motion, &gained);
-        mean(&s, i, flow, &seen);
+        if (e->slopes) mean(&s, i, flow, &seen);
         damped += speed_up(points, first + i, e, &gained, &seen, &momentum[i]);
       }
       if (again && e->slopes) share_leaning(&e->lattice, &s, points, first, half, k, end, 0, momentum, 3, e->straining);
@@ -362,7 +362,7 @@ void space_strain(const Model *m, Explicit *e)
   Batch b;
   Given g;
   for (PetscInt first = 0, n; first < points->n; first += n) {
-    n = batch_points(points, first);
+    n = batch_points(m, first);
     PetscReal *x = point_real(points, POINT_X, first);
     locate(&e->lattice, n, x, &s);
     for (PetscInt k = 0, end; k < n; k = end) flow_past(e, &s, k, end = run_of(&s.place, k, n), &strain);
