@@ -94,7 +94,7 @@ static void block_case(const Block *block, PetscInt cells_of_side, BenchCase *b,
     b->c.grid.grading[d] = 1;
     b->body.shape.max[d] = 1;
   }
-  b->c.analysis = (AnalysisSpec){.type = ANALYSIS_EXPLICIT, .end = 1, .step = 10 * 0.5 * h / 30};
+  b->c.analysis = (AnalysisSpec){.type = ANALYSIS_EXPLICIT, .end = 1, .step = 150 * 0.5 * h / 30};
   b->c.analysis.largest = b->c.analysis.step;
   b->c.basis.kind = block->basis;
   b->motion.on.has[1] = PETSC_TRUE;
