@@ -21,7 +21,7 @@ PetscErrorCode ModelRegrid(Model *model, Grid *grid, PetscInt *moved);
 PetscBool model_is_pressed(const Model *model);
 /* step/guess.c. From where Newton may start: as inertia alone would bring, like the step before, from
  * rest. */
-typedef enum { GUESS_INERTIA, GUESS_PREVIOUS, GUESS_REST, GUESS_N } FirstGuess;
+typedef enum { GUESS_INERTIA, GUESS_PREVIOUS, GUESS_REST, GUESS_GRIPPED, GUESS_N } FirstGuess;
 
 /* Does it know the increments of the step before? */
 PetscBool guess_follows(const Model *model);
@@ -58,6 +58,8 @@ void room_check(const Model *model, Diag *diag);
 PetscErrorCode SplitCheck(const Model *model, Diag *diag);
 /* Complain of bodies whose law needs a stress and has none (start/laws.c). */
 void stresses_check(const Model *model, Diag *diag);
+/* What it says of body b. */
+void stress_tell_none(const Case *c, PetscInt b, const Law *law, Diag *diag);
 /* equilibrium.c. Mistakes of a case that asks for one. */
 void equilibrium_check(const Model *model, Diag *diag);
 /* Does everything stay where it is, and only stresses change? */

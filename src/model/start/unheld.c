@@ -37,17 +37,23 @@ static PetscInt motions_of(const Model *m) { return m->c->kinematics->hoop ? 1 :
 
 static PetscBool is_of(const Group *g, PetscInt node) { return g->of[node] == (PetscReal)(g->body + 1); }
 
-/* What each rigid motion moves the node by along an axis: of the frame w, NULL: of space. */
-static void row_of(const Model *m, const Group *g, PetscInt node, PetscInt axis, const PetscReal *w,
-                   PetscReal row[RIGID])
+/* What each rigid motion moves the place x by along e. */
+static void row_at(const Model *m, const Group *g, const PetscReal *x, const PetscReal e[3], PetscReal row[RIGID])
 {
-  const PetscReal *x = m->grid->x + node * m->dim;
-  PetscReal e[3] = {axis == 0, axis == 1, axis == 2}, r[3] = {0, 0, 0};
-  if (w) frame_turn(m->dim == 2 ? 2 : 3, w, e); /* compilers see that no more is read than is set */
+  PetscReal r[3] = {0, 0, 0};
   for (PetscInt d = 0; d < m->dim; ++d) r[d] = (x[d] - g->centre[d]) / g->size;
   const PetscReal turns[3] = {r[1] * e[2] - r[2] * e[1], r[2] * e[0] - r[0] * e[2], r[0] * e[1] - r[1] * e[0]};
   for (PetscInt d = 0; d < g->n && d < m->dim; ++d) row[d] = g->n == 1 ? e[1] : e[d];
   for (PetscInt k = m->dim; k < g->n; ++k) row[k] = m->dim == 3 ? turns[k - 3] : turns[2];
+}
+
+/* The node, along an axis: of the frame w, NULL: of space. */
+static void row_of(const Model *m, const Group *g, PetscInt node, PetscInt axis, const PetscReal *w,
+                   PetscReal row[RIGID])
+{
+  PetscReal e[3] = {axis == 0, axis == 1, axis == 2};
+  if (w) frame_turn(m->dim == 2 ? 2 : 3, w, e); /* compilers see that no more is read than is set */
+  row_at(m, g, m->grid->x + node * m->dim, e, row);
 }
 
 /* Of the motions that are free: how far do they move it? */
@@ -168,6 +174,49 @@ static void count_in(Group *g, const Hold *hold)
   take_away(g, hold->row);
 }
 
+/* Squares of what motions move contact points by where walls hold them: against the wall, and along it if it rubs. */
+static void add_walls(const Model *m, const Group *g, PetscReal *sum)
+{
+  const Contact *s = m->contact;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    if ((!c->touches && c->before == CONTACT_OPEN) || !is_of(g, s->node[c->first])) continue;
+    for (PetscInt d = 0; d < m->dim; ++d) {
+      const PetscBool rubs = c->law.kind != CONTACT_FRICTIONLESS;
+      const PetscReal axis[3] = {d == 0, d == 1, d == 2};
+      PetscReal row[RIGID] = {0};
+      if (!rubs && d > 0) break;
+      row_at(m, g, c->x, rubs ? axis : c->normal, row);
+      for (PetscInt k = 0; k < g->n * g->n; ++k) sum[k] += row[k / g->n] * row[k % g->n];
+    }
+  }
+}
+
+/* What walls hold that it touches is not free, as long as they push. */
+static PetscErrorCode WallsHold(const Model *m, Group *g)
+{
+  PetscReal sum[RIGID * RIGID] = {0}, trace = 0;
+
+  PetscFunctionBeginUser;
+  if (!m->contact) PetscFunctionReturn(0);
+  add_walls(m, g, sum);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)(g->n * g->n), MPIU_REAL, MPIU_SUM, m->comm));
+  for (PetscInt k = 0; k < g->n; ++k) trace += sum[k * (g->n + 1)];
+  while (g->n_free) {
+    PetscReal most = 0, held[RIGID];
+    for (PetscInt f = 0; f < g->n_free; ++f) {
+      PetscReal row[RIGID] = {0}, moved = 0;
+      for (PetscInt k = 0; k < g->n * g->n; ++k) row[k / g->n] += sum[k] * g->free[f][k % g->n];
+      for (PetscInt k = 0; k < g->n; ++k) moved += row[k] * g->free[f][k];
+      if (moved <= most) continue;
+      most = moved;
+      for (PetscInt k = 0; k < g->n; ++k) held[k] = row[k];
+    }
+    if (most <= LEVER * trace) break;
+    take_away(g, held);
+  }
+  PetscFunctionReturn(0);
+}
+
 /* Where the group is, and which motions are left to it by what is prescribed. *any: does it touch a node? */
 static PetscErrorCode GroupLook(const Model *m, Group *g, PetscBool *any)
 {
@@ -200,6 +249,7 @@ static PetscErrorCode GroupLook(const Model *m, Group *g, PetscBool *any)
     if (hold.strength < LEVER) break;
     count_in(g, &hold);
   }
+  PetscCall(WallsHold(m, g));
   PetscFunctionReturn(0);
 }
 
@@ -299,9 +349,9 @@ PetscErrorCode UnheldCheck(Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   if (a->unheld != UNHELD_HOLD) PetscFunctionReturn(0);
-  if (a->type != ANALYSIS_STATIC || m->method->clouds || m->walls || m->c->n_interfaces)
+  if (a->type != ANALYSIS_STATIC || m->method->clouds || m->c->n_interfaces || (m->contact && m->contact->n_rigid))
     diag_error(diag, "analysis.unheld",
-               "unheld: hold is for type static, methods mpm and fem, without walls and interfaces");
+               "unheld: hold is for type static, methods mpm and fem, without interfaces and walls with mass");
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(RIGID * m->c->n_bodies, &m->unheld.dof, RIGID * m->c->n_bodies, &m->unheld.turns));

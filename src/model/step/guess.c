@@ -43,6 +43,7 @@ PetscInt guess_order(const Model *m, FirstGuess order[GUESS_N])
     if (known && !previous) order[n++] = GUESS_PREVIOUS;
   }
   order[n++] = GUESS_REST;
+  if (!m->scheme->inertia && m->contact && contact_rubs(m->c)) order[n++] = GUESS_GRIPPED;
   return n;
 }
 
@@ -85,7 +86,7 @@ void guess_make(const Model *m, FirstGuess guess, PetscReal dt, PetscReal *du)
   const PetscInt dofs = m->grid->n_nodes * m->dim;
   for (PetscInt k = 0; m->contact && k < m->contact->n_rigid; ++k)
     rigid_guess(m->contact->rigid + k, m->walls, guess == GUESS_PREVIOUS);
-  if (guess == GUESS_REST) {
+  if (guess == GUESS_REST || guess == GUESS_GRIPPED) {
     for (PetscInt i = 0; i < dofs; ++i) du[i] = 0;
     return;
   }

@@ -67,7 +67,7 @@ static PetscErrorCode OrderGuesses(Model *m, PetscReal dt, StepProblem *p, First
 
   PetscFunctionBeginUser;
   *n = guess_order(m, guess);
-  if (!p->stiff || *n < GUESS_N) PetscFunctionReturn(0);
+  if (!p->stiff || *n < 3) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < 2; ++k) {
     PetscCall(MakeGuess(m, guess[k], dt));
     PetscCall(NewtonMiss(m->newton, p, &miss[k]));
@@ -94,6 +94,7 @@ static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProbl
   PetscCall(OrderGuesses(m, dt, &problem, guess, &guesses));
   for (PetscInt k = 0; k < guesses; ++k) {
     PetscCall(MakeGuess(m, guess[k], dt));
+    problem.grips = (PetscBool)(guess[k] == GUESS_GRIPPED);
     pressure_guess(m);
     PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
     materials_step(m->c->n_materials, m->materials, m->time, dt * time_solved(m->scheme), m->scheme->inertia);

@@ -135,8 +135,8 @@ static PetscReal motion_of(const ContactPoint *c)
 static PetscBool is_carried(const Contact *s, const ContactPoint *c)
 {
   PetscReal along = 0, square = 0, pressure = 0;
-  if (c->before == CONTACT_OPEN || c->law.kind == CONTACT_FRICTIONLESS || c->law.kind == CONTACT_BONDED)
-    return PETSC_FALSE;
+  const PetscBool touched = (PetscBool)(c->touches || c->before != CONTACT_OPEN);
+  if (!touched || c->law.kind == CONTACT_FRICTIONLESS || c->law.kind == CONTACT_BONDED) return PETSC_FALSE;
   for (int d = 0; d < 3; ++d) along += c->swept[d] * c->facing[d], pressure += c->last[d] * c->facing[d];
   for (int d = 0; d < 3; ++d) square += PetscSqr(c->swept[d] - along * c->facing[d]);
   return (PetscBool)(PetscSqrtReal(square) * c->law.along >

@@ -4,6 +4,12 @@
 #include "solve/newton/newton_private.h"
 #include <petsctime.h>
 
+/* a first guess that goes along with walls takes at most so many steps, until so much is left of what it began with;
+ * or no more than these where none of them has left less */
+#define CARRIES 10
+#define CARRIED 1e-4
+#define CARRIES_IN_VAIN 4
+
 PetscErrorCode NewtonCreate(MPI_Comm comm, const NewtonSpec *spec, Newton **newton)
 {
   PetscFunctionBeginUser;
@@ -168,32 +174,50 @@ static PetscErrorCode Miss(Newton *n, PetscReal *norm)
   PetscFunctionReturn(0);
 }
 
+/* A step of Newton's as if nothing that was in contact could slide. */
+static PetscErrorCode Grip(Newton *n, PetscBool *solved)
+{
+  Contact *contact = n->problem->scene.contact;
+
+  PetscFunctionBeginUser;
+  *solved = PETSC_FALSE;
+  contact->grips = PETSC_TRUE;
+  PetscCall(NewtonAssemble(n, PETSC_TRUE));
+  contact->grips = PETSC_FALSE;
+  PetscCall(NewtonGetResidual(n, n->f));
+  if (n->report->status == LAW_OK) PetscCall(StepLinearly(n, solved));
+  PetscFunctionReturn(0);
+}
+
 /* Statics, where a rough wall goes along itself: bodies that it carries are left behind by any guess but the last
- * step's, slide on it everywhere then, and nothing tells how far they have to go. So first one step as if what it
- * touches could not slide; where that leads farther off, as where a body is held and the wall passes it, du stays. */
+ * step's, slide on it everywhere then, and nothing tells how far they have to go. So first a few steps as if what it
+ * touches could not slide: the first turns what turns along its tangent, into the wall or off it, the next ones back.
+ * What leaves the least is kept; where that is du, as where a body is held and the wall passes it, it stays. */
 static PetscErrorCode Carry(Newton *n)
 {
   StepProblem *p = n->problem;
   Contact *contact = p->scene.contact;
   const PetscInt dofs = p->grid->n_nodes * p->grid->dim;
-  PetscReal *before, miss[2];
-  PetscBool carries = PETSC_FALSE, solved;
+  PetscReal *best, least, miss, first;
+  PetscBool carries = PETSC_FALSE, solved = PETSC_TRUE;
 
   PetscFunctionBeginUser;
   if (contact && !p->pressure && !p->border && !contact->n_rigid) PetscCall(ContactCarries(contact, n->comm, &carries));
-  if (!carries) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(dofs, &before));
-  PetscCall(PetscArraycpy(before, p->du, dofs));
-  PetscCall(Miss(n, &miss[0]));
-  contact->grips = PETSC_TRUE;
-  PetscCall(NewtonAssemble(n, PETSC_TRUE));
-  contact->grips = PETSC_FALSE;
-  PetscCall(NewtonGetResidual(n, n->f));
-  if (n->report->status == LAW_OK) PetscCall(StepLinearly(n, &solved));
-  PetscCall(Miss(n, &miss[1]));
-  if (!(miss[1] < miss[0])) PetscCall(PetscArraycpy(p->du, before, dofs));
+  if (!carries && !p->grips) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(dofs, &best));
+  PetscCall(PetscArraycpy(best, p->du, dofs));
+  PetscCall(Miss(n, &first));
+  least = first;
+  for (PetscInt k = 0; k < (least < first ? CARRIES : CARRIES_IN_VAIN) && solved && least >= CARRIED * first; ++k) {
+    PetscCall(Grip(n, &solved));
+    PetscCall(Miss(n, &miss));
+    if (!(miss < least) && !p->grips) continue;
+    least = miss;
+    PetscCall(PetscArraycpy(best, p->du, dofs));
+  }
+  PetscCall(PetscArraycpy(p->du, best, dofs));
+  PetscCall(PetscFree(best));
   n->report->status = LAW_OK;
-  PetscCall(PetscFree(before));
   PetscFunctionReturn(0);
 }
 

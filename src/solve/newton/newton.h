@@ -57,6 +57,7 @@ typedef struct {
    * two iterations, and none shortens the step of all (docs/theory.md, "Stiff matter that yields"). So is what is
    * pressed to its limit. */
   PetscBool stiff;
+  PetscBool grips; /* does the first guess go along with walls, whatever friction bears? */
   /* Do points see more nodes than those of a cell? Then a tangent takes many times as long as a residual. */
   PetscBool wide;
   /* what the last digit of a coordinate makes of the force at a node, N */

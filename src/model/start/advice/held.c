@@ -123,9 +123,9 @@ static const char *balance_hint(const Model *m)
   PetscBool rubs = case_has_contact(m->c, CONTACT_STICK);
   for (PetscInt k = 0; k < m->c->n_walls; ++k) rubs |= m->c->walls[k].friction > 0;
   for (PetscInt k = 0; k < m->c->n_interfaces; ++k) rubs |= m->c->interfaces[k].friction > 0;
-  if (!m->contact) return "analysis: {unheld: hold}";
-  return rubs ? "let it reach a thousandth of a cell into what is to hold it by friction"
-              : "friction: 1e-5 on what it touches";
+  if (rubs) return "let it reach a thousandth of a cell into what is to hold it by friction";
+  return m->c->n_interfaces || (m->contact && m->contact->n_rigid) ? "friction: 0.01 on what it touches"
+                                                                   : "analysis: {unheld: hold}";
 }
 
 /* What nothing holds: a mistake at the start, a warning at the end. */

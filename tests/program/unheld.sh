@@ -1,0 +1,60 @@
+#!/bin/sh
+# Statics of bodies that smooth walls hold in some directions alone: `unheld: hold` sees to the others.
+. "$(dirname "$0")/library.sh"
+
+cat >block.yaml <<'EOF'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 2, unheld: hold}
+grid: {box: {min: [-0.2, -0.2], max: [0.8, 0.8]}, size: 0.1}
+bodies: [{name: b, shape: {box: {min: [0.013, 0.017], max: [0.413, 0.317]}}, material: r}]
+materials: {r: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0.3}}
+walls: [{name: w, shape: {half-space: {point: [0, 0.017], normal: [0, 1]}}, contact: frictionless}]
+loads: {gravity: [0, -9.81]}
+measures: {fx: {wall_force: x, of: {wall: w}}, fy: {wall_force: y, of: {wall: w}}, tz: {wall_torque: z, of: {wall: w}, about: [0.213, 0.017]}}
+output: {every: end}
+EOF
+# Its weight, in the middle of its foot.
+rests() {
+  awk -F, 'END { if (($3 ^ 2 > 1e-10) || (($4 - 1177.2) ^ 2 > 1e-10) || $5 ^ 2 > 1e-4) exit 1 }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"
+}
+for way in "gimp 1" "gimp 2" "gimp 3" "cell 1" "bspline 1" "bspline 3"; do
+  set -- $way
+  expect "a block on a smooth floor, $way" 0 on_ranks $2 "$talus" run block.yaml --out o --force --set basis=$1
+  says err.txt "nothing holds 'b' in x: held in 1 direction(s) of nodes, which bear nothing"
+  rests
+done
+expect "the same in fem" 0 "$talus" run block.yaml --out o --force --set method=fem --set 'bodies[0].shape={box: {min: [0, 0], max: [0.4, 0.3]}}' --set 'walls[0].shape={half-space: {point: [0, 0], normal: [0, 1]}}' --set 'measures.tz.about=[0.2, 0]'
+rests
+expect "in space" 0 "$talus" run block.yaml --out o --force --set kinematics=3d \
+  --set 'grid={box: {min: [-0.2, -0.2, -0.2], max: [0.8, 0.8, 0.8]}, size: 0.1}' --set 'loads={gravity: [0, -9.81, 0]}' \
+  --set 'bodies[0].shape={box: {min: [0.013, 0.017, 0.02], max: [0.413, 0.317, 0.22]}}' \
+  --set 'walls[0].shape={half-space: {point: [0, 0.017, 0], normal: [0, 1, 0]}}' --set 'measures={fx: {wall_force: x, of: {wall: w}}, fy: {wall_force: y, of: {wall: w}}, fz: {wall_force: z, of: {wall: w}}}'
+says err.txt "nothing holds 'b' in x and z and from turning: held in 3 direction(s) of nodes"
+awk -F, 'END { exit !(($3 ^ 2 < 1e-10) && (($4 - 235.44) ^ 2 < 1e-10) && $5 ^ 2 < 1e-10) }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"
+
+# A floor that leans, with the weight towards it: nothing holds the block along it. With any other weight it slides.
+cat >lean.awk <<'EOF'
+BEGIN { c = cos(0.3); s = sin(0.3); printf "loads={gravity: [%.17g, %.17g]}\n", -9.81 * s, -9.81 * c
+  printf "walls[0].shape={half-space: {point: [0, 0], normal: [%.17g, %.17g]}}\n", s, c
+  printf "bodies[0].shape={polygon: [[%.17g, %.17g], [%.17g, %.17g], [%.17g, %.17g], [%.17g, %.17g]]}\n", -0.2 * c, 0.2 * s, 0.2 * c, -0.2 * s,
+    0.2 * c + 0.3 * s, 0.3 * c - 0.2 * s, -0.2 * c + 0.3 * s, 0.3 * c + 0.2 * s }
+EOF
+awk -f lean.awk >lean.txt
+leaning() {
+  "$talus" run block.yaml --out o --force --set "$(sed -n 2p lean.txt)" --set "$(sed -n 3p lean.txt)" --set 'grid.box={min: [-0.5, -0.4], max: [0.5, 0.6]}' "$@"
+}
+expect "a floor that leans" 0 leaning --set "$(sed -n 1p lean.txt)"
+awk -F, 'END { w = sqrt($3 * $3 + $4 * $4); exit !((w - 1177.2) ^ 2 < 1e-2 && ($3 / $4 - sin(0.3) / cos(0.3)) ^ 2 < 1e-12) }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"
+expect "a floor on which it slides" 2 leaning
+says err.txt "nothing holds 'b'" "N are out of balance"
+
+# Pressed between two smooth plates, without Poisson's ratio: mu (l - 1 / l) a unit of its breadth.
+expect "between plates" 0 "$talus" run block.yaml --out o --force --set materials.r.poisson=0 --set 'loads={}' \
+  --set 'walls[1]={name: lid, shape: {half-space: {point: [0, 0.317], normal: [0, -1]}}, contact: frictionless, motion: [{displacement: {y: -0.015}}]}'
+awk -F, 'END { p = 0.4 * 0.5e8 * (1 / 0.95 - 0.95); exit !(($4 / p - 1) ^ 2 < 1e-7) }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"
+
+expect "interfaces" 2 "$talus" run block.yaml --out o --force --set 'bodies[1]={name: c, shape: {box: {min: [0.013, 0.317], max: [0.413, 0.417]}}, material: r}' \
+  --set 'interfaces=[{name: i, between: [b, c], contact: frictionless}]'
+says err.txt "without interfaces and walls with mass"
+finish
