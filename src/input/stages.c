@@ -171,6 +171,21 @@ static YamlNode *find_entry(const YamlNode *list, const YamlNode *entry)
   return NULL;
 }
 
+/* Of a body that is there only its material can change: with all else it has begun. */
+static void check_begun(const Layer *l, const YamlNode *was, const YamlNode *entry)
+{
+  static const char *const changes[] = {"name", "material", "absent", NULL};
+  for (PetscInt i = 0; i < entry->n; ++i) {
+    const YamlNode *child = entry->child[i], *other = yaml_find(was, child->key);
+    if (is_one_of(child->key, changes) || (other && yaml_equal(other, child))) continue;
+    yaml_error(l->document, l->diag, child, PETSC_TRUE, "'%s' is there already, and its `%s` is what it began with",
+               name_of(was), child->key);
+    diag_hint(l->diag,
+              "of a body that is there a stage changes `material`, or says `absent: true`; all else is of bodies "
+              "that come");
+  }
+}
+
 /* What comes begins with the stage that brings it, whatever named it before: its times count from there. */
 static PetscErrorCode LayOnEntry(const Layer *l, YamlNode *was, const YamlNode *entry)
 {
@@ -196,8 +211,10 @@ static PetscErrorCode LayEntries(const Layer *l, YamlNode *list, const YamlNode 
       PetscCall(Clone(l, entry, l->stage, &copy));
       PetscCall(YamlNodeAppend(list, copy));
     } else if (yaml_equal(was, entry)) continue;
-    else if (by_keys || says_presence_only(entry)) PetscCall(LayOnEntry(l, was, entry));
-    else PetscCall(Replace(l, was, entry));
+    else if (by_keys || says_presence_only(entry)) {
+      if (by_keys && l->stage > 0 && !is_absent(was) && !is_absent(entry)) check_begun(l, was, entry);
+      PetscCall(LayOnEntry(l, was, entry));
+    } else PetscCall(Replace(l, was, entry));
   }
   PetscFunctionReturn(0);
 }

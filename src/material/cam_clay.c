@@ -276,7 +276,8 @@ static const LawParameter parameters[] = {
   {"specific_volume", "", "1 + e for which both slopes are given; 1: they are those of ln v over ln p", 1, 100,
    .fallback = 1},
   {"shear_modulus", "Pa", "shear modulus, a constant", POSITIVE, .fallback = NAN},
-  {"preconsolidation", "Pa", "largest isotropic pressure so far, p_c", POSITIVE, .fallback = NAN, .absent = "ocr"},
+  {"preconsolidation", "Pa", "largest isotropic pressure so far, p_c (Kirchhoff, J times the true one)", POSITIVE,
+   .fallback = NAN, .absent = "ocr"},
   {"ocr", "", "p_c over that of the yield surface through the initial stress; 1: normally consolidated", 1,
    PETSC_MAX_REAL, .fallback = 1},
   {"reference_pressure", "Pa", "pressure whose stiffness stands for the material's in time scales and stabilisation",
@@ -286,7 +287,7 @@ static const LawParameter parameters[] = {
 
 static const LawField fields[] = {
   {"elastic_strain", "", "elastic left Cauchy-Green tensor b; 1 at a pressure of 1e5 Pa", 6, {1, 1, 1, 0, 0, 0}},
-  {"preconsolidation", "Pa", "largest isotropic pressure so far, p_c", 1, {0}},
+  {"preconsolidation", "Pa", "largest isotropic pressure so far, p_c (Kirchhoff, J times the true one)", 1, {0}},
   {"equivalent_plastic_strain", "", "accumulated sqrt(2/3) |dev d eps^p|", 1, {0}},
   {.name = NULL},
 };

@@ -353,7 +353,7 @@ static PetscErrorCode CreateBodies(Model *m, Diag *diag)
   if (!errors) PetscCall(InitialStress(m, &outline, diag));
   if (!errors) sizes_start(m);
   PetscCall(DiagReduce(m->comm, diag, &errors));
-  if (!errors && !m->c->initial.run) stresses_check(m, diag); /* else when that has given its stresses */
+  if (!errors && !case_goes_on(m->c)) stresses_check(m, diag); /* else when the state has given its stresses */
   PetscCall(OutlineClear(&outline));
   PetscFunctionReturn(0);
 }

@@ -447,6 +447,10 @@ refused "two stages of one name" "the name 'weight' is taken by stages[0]" colum
 refused "a mistake in a stage" "(stage 'fill')" column.yaml --set 'stages[2].materials.loose.young=-1'
 refused "a load on what is gone" "the load acts on 'top', which is not there (stage 'dig')" column.yaml --set 'loads.tractions=[{on: {body: top}, value: [0, -1]}]'
 refused "failure without a search" "no search for a factor of safety comes before" column.yaml --set 'stages[1].strength={beyond_failure: 1}'
+refused "what a body began with" "'column' is there already, and its \`k0\` is what it began with" column.yaml --set 'stages[1].bodies[1]={name: column, k0: 3}'
+refused "its velocity" "'column' is there already, and its \`velocity\` is what it began with" column.yaml --set 'stages[2].bodies[0].velocity=[1, 0]'
+says err.txt "all else is of bodies that come"
+refused "its shape" "\`shape\` is what it began with" column.yaml --set 'stages[1].bodies[1]={name: column, shape: {box: {min: [0, 0], max: [1, 1]}}}'
 refused "no strength to divide" "has no strength that could be divided" column.yaml --set 'stages[3].bodies=[{name: column, material: gravel}]'
 refused "a constant that is none" "the material 'soil' has no 'cohesoin' that could change with time (stage 'change')" ageing.yaml --set 'stages[1].materials.soil.amplitude={cohesoin: [[0, 1]]}'
 says err.txt "did you mean 'cohesion'?"

@@ -150,6 +150,20 @@ sed 's/^  - {name: clay.*/&\n  - {name: more, shape: {box: {min: [0, 2], max: [2
 expect "clay that comes" 2 "$talus" run more.yaml --out more --set method=mpm
 says err.txt "'more' is of modified-cam-clay, which has no state without stress"
 
+# What bears its weight by another law becomes clay in a stage, with the stress that it has; clay that comes needs its own.
+sed 's/material: clay, k0: 0.6/material: rock, k0: 0.6/; s/^materials: {/&rock: {law: neo-hookean, density: 2000, young: 1e8, poisson: 0.3}, /' clay.yaml >placed.yaml
+cat >>placed.yaml <<'END'
+stages:
+  - name: placed
+  - {name: clay, bodies: [{name: clay, material: clay}]}
+END
+for method in fem mpm; do
+  expect "clay in a stage, $method" 0 "$talus" run placed.yaml --out placed --force --set method=$method
+  awk -F, 'NR > 2 && ($4 > 80001 || $4 < 79999 || $5 > -19999 || $5 < -20001) { exit 1 }' placed/history.csv || fail "$name: $(cat placed/history.csv)"
+done
+expect "clay that comes in a stage" 2 "$talus" check placed.yaml --set 'stages[1].bodies[1]={name: more, shape: {box: {min: [0, 2], max: [2, 2.5]}}, material: clay}'
+says err.txt "'more' is of modified-cam-clay, which has no state without stress"
+
 # What is named at the top and comes with a stage moves from that stage on, wherever its words stand: by 0.01 of a column
 # without Poisson's ratio, mu (l - 1 / l) = -100505 N. It comes, goes and comes back.
 cat >late.yaml <<'END'

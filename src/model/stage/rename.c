@@ -226,6 +226,19 @@ static void check_events(const Case *c, const Case *from, Diag *diag)
   }
 }
 
+/* Bodies that come with a law that has no state without stress. */
+static void check_stresses(const Case *c, const Case *from, Diag *diag)
+{
+  for (PetscInt b = 0; b < c->n_bodies; ++b) {
+    if (c->bodies[b].absent || !body_comes(c, from, b) || body_has_stress(&c->bodies[b])) continue;
+    for (PetscInt i = 0; i < c->n_materials; ++i) {
+      const Law *law = law_find(c->materials[i].law);
+      if (!strcmp(c->materials[i].name, c->bodies[b].material) && law && law->needs_stress)
+        stress_tell_none(c, b, law, diag);
+    }
+  }
+}
+
 PetscErrorCode RenameCheck(const Case *c, const Case *from, PetscBool next, Diag *diag)
 {
   const Method *method = method_find(c->method);
@@ -236,6 +249,7 @@ PetscErrorCode RenameCheck(const Case *c, const Case *from, PetscBool next, Diag
   if (next) check_walls(c, from, diag);
   if (next) check_interfaces(c, from, diag);
   if (next) check_events(c, from, diag);
+  if (next) check_stresses(c, from, diag);
   if (next || (c->n_walls == from->n_walls && c->n_interfaces == from->n_interfaces)) PetscFunctionReturn(0);
   diag_error(diag, c->n_walls != from->n_walls ? "walls" : "interfaces",
              "the state is one of %d walls and %d interfaces, here are %d and %d", (int)from->n_walls,

@@ -206,7 +206,7 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
   if (m->points->components[POINT_SLOPE] && !table_has(tables_find(tables, "points"), "slope"))
     PetscCall(SlopesStart(m->space, moves_linearly(from)));
   settle_stress(m);
-  if (!next) stresses_check(m, diag);
+  stresses_check(m, diag);
   if (next) PetscCall(WallsCome(m, from, diag));
   if (next) PetscCall(BeginMeasures(m, from, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));

@@ -69,17 +69,21 @@ void room_check(const Model *m, Diag *diag)
   }
 }
 
-void stresses_check(const Model *m, Diag *diag)
+void stress_tell_none(const Case *c, PetscInt b, const Law *law, Diag *diag)
 {
   char path[64];
+  PetscSNPrintf(path, sizeof path, "bodies[%d].material", (int)b);
+  diag_error(diag, path, "'%s' is of %s, which has no state without stress: it must begin under a pressure",
+             c->bodies[b].name, law->name);
+  diag_hint(diag, "`k0` gives the body the stress of its weight, for example k0: 0.5");
+}
+
+void stresses_check(const Model *m, Diag *diag)
+{
   for (PetscInt b = 0; b < m->c->n_bodies; ++b)
     for (PetscInt p = 0; p < m->points->n; ++p) {
       if (m->points->body[p] != b || !has_no_stress(m, p)) continue;
-      const Material *material = &m->materials[m->points->material[p]];
-      PetscSNPrintf(path, sizeof path, "bodies[%d].material", (int)b);
-      diag_error(diag, path, "'%s' is of %s, which has no state without stress: it must begin under a pressure",
-                 m->c->bodies[b].name, material->law->name);
-      diag_hint(diag, "`k0` gives the body the stress of its weight, for example k0: 0.5");
+      stress_tell_none(m->c, b, m->materials[m->points->material[p]].law, diag);
       break;
     }
 }

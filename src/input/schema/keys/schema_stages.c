@@ -19,7 +19,10 @@ static const SchemaEntry stage_entries[] = {
   PART_OF("analysis",
           "with `type` it stands for itself, without it changes single keys; `end` counts from the start "
           "of the stage"),
-  PART_OF("bodies", "entries change those of their name key by key (another material, `absent`), or come behind them"),
+  PART_OF(
+    "bodies",
+    "entries change those of their name key by key (another material, `absent`; all else only of bodies that come), or "
+    "come behind them"),
   PART_OF("materials", "with `law` a material stands for itself, without it single parameters change"),
   PART_OF("boundary",
           "entries take the place of those of their name, or come behind them; {name: ..., absent: true} "
