@@ -150,6 +150,27 @@ for file in factor.csv history.csv; do cmp -s whole/$file cut/$file || fail "$na
 expect "resumed at its end" 0 "$talus" run --resume whole
 for file in factor.csv history.csv; do cmp -s whole/$file cut/$file || fail "$name: $file differs"; done
 
+# What cannot fail itself slides: an elastic block on a floor with friction 0.6 that leans by 20 degrees, 0.6 / tan 20 = 1.6485
+cat >slides.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: factor-of-safety}
+grid: {box: {min: [0, 0], max: [2, 0.5]}, size: 0.125}
+bodies: [{name: s, shape: {box: {min: [0, 0], max: [2, 0.5]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 2000, young: 1e9, poisson: 0.2}}
+walls: [{name: w, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, friction: 0.6}]
+loads: {gravity: [3.420201433256687, -9.396926207859085]}
+measures: {F: {factor_of_safety: value}}
+END
+for way in "fem 1" "mpm 1" "fem 2" "fem 3"; do
+  set -- $way
+  expect "a block that slides, $way" 0 on_ranks $2 "$talus" run slides.yaml --out slides --force --quiet --set method=$1
+  awk -F, 'END { exit !($3 > 1.647 && $3 < 1.650) }' slides/history.csv || fail "$name: $(tail -n 1 slides/history.csv)"
+done
+sed 's/^walls:.*/boundary: [{on: {y: 0}, fix: [x, y]}]/' slides.yaml >held.yaml
+expect "a block that cannot slide" 2 "$talus" run held.yaml --out bad
+says err.txt "the law neo-hookean of 's' has no strength"
+
 # What cannot be
 sed 's/law: mohr-coulomb.*/law: neo-hookean, density: 2000, young: 1e9, poisson: 0.3}/' block.yaml >elastic.yaml
 expect "a law without strength" 2 "$talus" run elastic.yaml --out bad

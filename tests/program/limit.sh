@@ -137,6 +137,22 @@ done
 expect "a sphere without edges" 0 "$talus" run sphere.yaml --out run --force --set 'materials.clay={law: j2, density: 1, young: 1e9, poisson: 0.3, yield_stress: 2e5}'
 says out.txt "by load = it holds: it grew by"
 
+# What cannot yield slides at mu rho g V = 8 kN, 16 times what pushes, and does not lock
+cat >slides.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: limit-load, limit: {raise: push}}
+grid: {box: {min: [0, 0], max: [2, 0.5]}, size: 0.125}
+bodies: [{name: s, shape: {box: {min: [0, 0], max: [2, 0.5]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 2000, young: 1e9, poisson: 0.2}}
+walls: [{name: w, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, friction: 0.4}]
+loads: {gravity: [0, -10], tractions: [{name: push, on: {body: s, x: 0}, value: [1000, 0]}]}
+measures: {F: {limit_load: value}}
+END
+expect "a block that slides" 0 "$talus" run slides.yaml --out slides --force
+awk -F, 'END { exit !($3 > 15.9 && $3 < 16.1) }' slides/history.csv || fail "$name: $(tail -n 1 slides/history.csv)"
+if grep -q locks err.txt; then fail "$name: $(cat err.txt)"; fi
+
 # Resumed anywhere: the same bits
 expect "whole" 0 "$talus" run block.yaml --out whole --quiet --set checkpoint.steps=3 --set checkpoint.keep=99
 cp -r whole cut

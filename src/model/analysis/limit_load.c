@@ -39,6 +39,7 @@ void raised_advise(const Model *m, Diag *diag)
 {
   const GridSpec *grid = &m->c->grid;
   if (m->c->analysis.type != ANALYSIS_LIMIT || m->formulation->pressure || m->formulation->cells) return;
+  if (!materials_yield(m->c->n_materials, m->materials)) return;
   const PetscBool crossed = grid->kind == GRID_BOX && grid->cell == CELL_TRIANGLE && grid->diagonal == DIAGONAL_CROSSED;
   if (crossed || is_reduced(m)) return; /* these do not lock */
   diag_warning(diag, "formulation",

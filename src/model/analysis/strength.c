@@ -16,6 +16,7 @@ static PetscBool is_reduced(const Case *c, const BodySpec *body)
 static PetscBool material_is_reduced(const Model *m, PetscInt i)
 {
   const Case *c = m->c;
+  if (!m->materials[i].law->reduce) return PETSC_FALSE;
   for (PetscInt b = 0; b < c->n_bodies; ++b)
     if (!c->bodies[b].absent && is_reduced(c, &c->bodies[b]) && !strcmp(c->bodies[b].material, c->materials[i].name))
       return PETSC_TRUE;
@@ -48,6 +49,19 @@ void strength_set(Model *m, PetscReal factor)
     if (material_is_reduced(m, i)) material_reduce(&m->materials[i], factor);
 }
 
+/* Does body b rub where that is divided? Of what cannot fail itself, as a block on a ramp, that is all there is. */
+static PetscBool rubs(const Model *m, PetscInt b)
+{
+  const Case *c = m->c;
+  PetscBool any = PETSC_FALSE;
+  for (PetscInt k = 0; k < c->n_walls; ++k)
+    any |= c->walls[k].contact == CONTACT_FRICTION && contact_meets_body(c, k, b);
+  for (PetscInt k = 0; k < c->n_interfaces; ++k)
+    for (int side = 0; side < 2; ++side)
+      any |= c->interfaces[k].contact == CONTACT_FRICTION && case_body(c, c->interfaces[k].between[side]) == b;
+  return any;
+}
+
 /* A body that keeps its strength cannot share its material with one that does not. */
 static void check_body(const Model *m, PetscInt b, Diag *diag)
 {
@@ -59,7 +73,7 @@ static void check_body(const Model *m, PetscInt b, Diag *diag)
     if (strcmp(body->material, c->materials[i].name)) continue;
     const Law *law = m->materials[i].law;
     snprintf(path, sizeof path, "materials.%s.law", c->materials[i].name);
-    if (reduced && !law->reduce) {
+    if (reduced && !law->reduce && (law->yields || !rubs(m, b))) {
       diag_error(diag, path, "the law %s of '%s' has no strength that could be divided by a factor of safety",
                  law->name, body->name);
       diag_hint(diag, "name the bodies that may fail: %s: {bodies: [...]}",

@@ -143,7 +143,9 @@ static void tell_lost_way(const Model *m, Diag *diag)
 {
   diag_warning(diag, "formulation",
                "with a dilatancy angle Newton's method may lose its way in the mixed formulation long before anything "
-               "fails: a factor of safety or a limit load of half and less");
+               "fails: %s",
+               case_seeks(&m->c->analysis) ? "a factor of safety or a limit load of half and less"
+                                           : "what yields may come out far too soft, or a step give up");
   diag_hint(diag, "take `formulation: mean-dilatation`%s, or `dilatancy_angle: 0`",
             !only_simplices(m) ? ""
             : m->dim == 2      ? " and quadrilaterals (of Gmsh: `Mesh.RecombineAll = 1;`)"
@@ -156,7 +158,7 @@ static void advise_dilatancy(const Model *m, Diag *diag)
 {
   const Case *c = m->c;
   if (!case_dilates(c) || !case_is_static(&c->analysis)) return;
-  if (case_seeks(&c->analysis) && m->formulation->pressure) tell_lost_way(m, diag);
+  if (m->formulation->pressure) tell_lost_way(m, diag);
   if (!m->formulation->cells || only_simplices(m)) return;
   diag_warning(diag, "formulation",
                "soil that dilates comes out too strong where the points of a cell share its volume, by a quarter on "
