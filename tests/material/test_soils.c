@@ -212,6 +212,28 @@ static void test_softened(void **unused)
   assert_near("peak", most, (2e4 * cos(35 * PETSC_PI / 180) + 2e5 * s) / (1 - s), 1e-4 * most);
 }
 
+/* Pulled alike along all axes nothing shears: kappa stays 0, and the stress is that of the apex of the start, c cot phi,
+ * however steeply it would harden. */
+static void test_softening_opens(void **unused)
+{
+  (void)unused;
+  for (int angle = 1; angle < 30; ++angle) {
+    const NamedValue value[] = {{(char *)"young", 1e6},          {(char *)"poisson", 0.3},
+                                {(char *)"friction_angle", 30},  {(char *)"cohesion", 2e4},
+                                {(char *)"peak_strain", 0.02},   {(char *)"initial_friction_angle", angle},
+                                {(char *)"residual_strain", 0.2}};
+    Point p = {.m = soil("mohr-coulomb-softening", 7, value)};
+    start(&p, 0);
+    for (int k = 0; k < 200; ++k) {
+      const PetscReal e = 0.0061 + 1e-4 * k;
+      advance(&p, (PetscReal[3]){e, e, e});
+      const PetscReal apex = 2e4 / tan(angle * PETSC_PI / 180), bulk = 1e6 / 1.2 * log(p.J);
+      for (int i = 0; i < 3; ++i) assert_near("apex", p.tau[i], fmin(apex, bulk), 1e-9 * apex);
+      assert_near("kappa", p.state[6], 0, 1e-15);
+    }
+  }
+}
+
 #define V 2.1
 #define M 1.1
 
@@ -293,9 +315,9 @@ static void test_no_pressure(void **unused)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_golden),    cmocka_unit_test(test_matches),     cmocka_unit_test(test_peaks),
-    cmocka_unit_test(test_softened),  cmocka_unit_test(test_lines),       cmocka_unit_test(test_drained),
-    cmocka_unit_test(test_undrained), cmocka_unit_test(test_no_pressure),
+    cmocka_unit_test(test_golden),   cmocka_unit_test(test_matches),         cmocka_unit_test(test_peaks),
+    cmocka_unit_test(test_softened), cmocka_unit_test(test_softening_opens), cmocka_unit_test(test_lines),
+    cmocka_unit_test(test_drained),  cmocka_unit_test(test_undrained),       cmocka_unit_test(test_no_pressure),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failures = cmocka_run_group_tests(tests, NULL, NULL);

@@ -117,4 +117,17 @@ for ranks in 1 2 3; do
   awk -F, 'NR == 2 { first = $4 + 300 * $6 } NR > 1 { x = $4 + 300 * $6 - first; y = $5 + 300 * $7; if (x * x > 1e-8 || y * y > 1e-8) { bad = 1; print } moved = $6 }
     END { exit bad || NR < 25 || moved < 0.1 }' strikes/history.csv >out.txt || fail "$name: momentum"
 done
+# Gravity that grows from nothing: what falls freely has all of its work, to the square of a substep, and the transfer none.
+cat >ramp.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: explicit, end: 0.06, step: 0.002}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.1}
+bodies: [{name: b, shape: {box: {min: [0.2, 0.1], max: [0.8, 0.5]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+loads: {gravity: [0, -9.81], gravity_amplitude: [[0, 0], [0.06, 1]]}
+measures: {kinetic: {energy: kinetic}, external: {energy: external}}
+END
+expect "growing gravity" 0 "$talus" run ramp.yaml --out ramp --force
+awk -F, 'END { k = 0.5 * 240 * (9.81 * 0.03) ^ 2; exit !(($3 / k - 1) ^ 2 < 1e-24 && ($4 / k - 1) ^ 2 < 2.5e-7) }' ramp/history.csv || fail "$name: $(tail -n 1 ramp/history.csv)"
 finish

@@ -127,10 +127,14 @@ typedef struct {
   PetscReal tau[3], slope[3], flow, n[3], rate; /* rate: d (kappa - kappa_n - flow) / d kappa */
 } SoftTry;
 
+/* What differs by no more than this of strains is no shear: as where all that opens does so alike, at the apex, and has
+ * no direction along which the strength could be asked for its slope. */
+#define SOFT_ROUNDING (8.0 * PETSC_MACHINE_EPSILON)
+
 static inline void soft_try(const PetscReal *q, PetscReal kappa, SoftScale scale, const PetscReal e[3],
                             SoftStrength *at, SoftTry *t)
 {
-  PetscReal elastic[3], norm = 0.0, along = 0.0;
+  PetscReal elastic[3], norm = 0.0, size = 0.0, along = 0.0;
   soft_strength(q, PetscMax(scale.offset + scale.scale * kappa, 0.0), at);
   t->region = mc_return(at->p, e, t->tau);
   mc_compliance(at->p, t->tau, elastic);
@@ -138,8 +142,10 @@ static inline void soft_try(const PetscReal *q, PetscReal kappa, SoftScale scale
   for (int i = 0; i < 3; ++i) {
     t->n[i] = t->region == MC_ELASTIC ? 0.0 : e[i] - elastic[i] - mean;
     norm += t->n[i] * t->n[i];
+    size += fabs(e[i]) + fabs(elastic[i]);
   }
   norm = sqrt(norm);
+  if (norm <= SOFT_ROUNDING * size) norm = 0.0;
   t->flow = sqrt(2.0 / 3.0) * norm;
   soft_slope(at, t->region, e, t->tau, t->slope);
   for (int i = 0; i < 3; ++i) {

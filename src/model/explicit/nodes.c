@@ -199,16 +199,17 @@ KERNEL void strain(const int dim, const PetscBool again, Explicit *e)
   }
 }
 
-/* Work of gravity and loads, along the way that points go. */
+/* Work of gravity and loads, along the way that points go: of a gravity that changes its mean, as its impulses have it. */
 KERNEL void work(const int dim, const Model *m, Explicit *e)
 {
-  PetscReal power = 0;
+  PetscReal power = 0, g[3];
+  gravity_at(m->c, e->time + e->dt, g);
+  for (int d = 0; d < dim; ++d) g[d] = 0.5 * (g[d] + e->g[d]);
   for (PetscInt k = 0; k < e->n_active; ++k) {
     const PetscInt node = e->active[k];
     if (node >= m->grid->n_owned) continue;
     const PetscReal mass = e->sum[node * (1 + 2 * dim)], *v = explicit_way(e, dim, node);
-    for (int d = 0; d < dim; ++d)
-      power += (mass * e->g[d] + (e->loaded ? m->nodes->external[node * dim + d] : 0)) * v[d];
+    for (int d = 0; d < dim; ++d) power += (mass * g[d] + (e->loaded ? m->nodes->external[node * dim + d] : 0)) * v[d];
   }
   e->external += e->dt * power;
 }
