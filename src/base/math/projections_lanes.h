@@ -11,7 +11,7 @@
 #pragma once
 #include "base/math/lanes.h"
 
-#define ROUNDING 1e-15 /* a deviator of this share of the mean is none */
+#define ALIKE_BELOW 1e-15 /* a deviator of this share of the mean is none */
 
 /* Largest root c of 4 c^3 - 3 c = x, 0 <= x <= 1: to 1e-8 by a polynomial, to rounding by a step of Newton's. */
 LANES_INLINE void lanes_third_of_angle(const Lanes *x, Lanes *c)
@@ -53,7 +53,7 @@ LANES_INLINE void lanes_sym_projections(const Lanes s[6], Lanes value[3], Lanes 
   const Lanes d[6] = {s[0] - mean, s[1] - mean, s[2] - mean, s[3], s[4], s[5]};
   Lanes J2, J3, q, size, c, eta, nn[6], D[6], delta, delta2 = none;
   lanes_invariants(d, &J2, &J3);
-  const LaneBits alike = J2 <= ROUNDING * ROUNDING * (mean * mean), high = J3 >= 0.0;
+  const LaneBits alike = J2 <= ALIKE_BELOW * ALIKE_BELOW * (mean * mean), high = J3 >= 0.0;
   const Lanes third = J2 * (1.0 / 3.0);
   lanes_sqrt(&third, &q);
   lanes_abs(&J3, &size);

@@ -48,5 +48,5 @@ const Measure measure_strain = {
   .takes = MEASURE_WORD,
   .number = {.unit = "",
              .help = "logarithmic strain ln V of the deformation since the unstressed state: its mean over the volume, "
-                     "or at a tracer a linear fit to the points around it; invariants are those of that"},
+                     "or at a tracer a linear fit to the points of its body around it; invariants are those of that"},
   .words = words};
