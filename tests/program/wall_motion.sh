@@ -169,4 +169,39 @@ for way in "mpm gimp 1" "fem gimp 1" "mpm bspline 1" "mpm gimp 2" "mpm gimp 3"; 
 done
 expect "the floor of a box" 0 "$talus" run tilt.yaml --out tilt --force --quiet --set 'walls[0].shape={box: {min: [-0.9, -0.4], max: [0.9, 0.9]}}' --set walls[0].inside=true
 tilted
+
+# Its weight alone holds a block on a floor that goes down, at once or in a stage, straight or round: it goes along.
+cat >down.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 10}
+grid: {box: {min: [0, -0.5], max: [1, 0.5]}, size: 0.125}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 0.5]}}, material: r}]
+materials: {r: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
+walls: [{name: w, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, friction: 0.4, motion: [{displacement: {y: -0.1}}]}]
+loads: {gravity: [0, -9.81], gravity_amplitude: [[0, 1]]}
+measures: {fx: {wall_force: x, of: {wall: w}}, fy: {wall_force: y, of: {wall: w}}, y: {displacement: y, of: {tracer: [0.5, 0.25]}}}
+output: {every: end}
+END
+cat >stage.txt <<'END'
+stages=[{name: rests}, {name: moves, walls: [{name: w, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, friction: 0.4, motion: [MOTION]}]}]
+END
+went() {
+  awk -F, -v y="$1" -v n="$2" -v c=$3 'NR > 2 && ($(c + 1) - 4905) ^ 2 > 0.1 { bad = 1 } END { exit bad || NR != n || ($(c + 2) - y) ^ 2 > 1e-6 }' down/history.csv ||
+    fail "$name: $(tail -n 1 down/history.csv)"
+}
+for way in "fem 1 frictional" "mpm 1 frictional" "mpm 1 frictionless" "mpm 2 frictional" "mpm 3 frictional"; do
+  set -- $way
+  smooth=walls[0].name=w
+  [ $3 = frictional ] || smooth='walls[0]={name: w, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, contact: frictionless, motion: [{displacement: {y: -0.1}}]}'
+  held=analysis.unheld=refuse
+  [ $3 = frictional ] || held=analysis.unheld=hold
+  expect "a floor that goes down, $way" 0 on_ranks $2 "$talus" run down.yaml --out down --force --quiet --set method=$1 --set "$smooth" --set $held
+  went -0.1 12 3
+done
+for motion in '{velocity: {y: -0.05}}' '{velocity: {y: 0.05}}' '{rotation: {centre: [2, 0], rate: -0.1}}' '{rotation: {centre: [2, 0], rate: 0.1}}'; do
+  case $motion in *y:\ -*) y=-0.05 ;; *y:*) y=0.05 ;; *-0.1*) y=0.1485 ;; *) y=-0.151 ;; esac
+  expect "a floor that moves in a stage, $motion" 0 "$talus" run down.yaml --out down --force --quiet --set walls[0].motion=[] --set "$(sed "s/MOTION/$motion/" stage.txt)"
+  went $y 22 4
+done
 finish

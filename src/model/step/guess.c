@@ -43,7 +43,7 @@ PetscInt guess_order(const Model *m, FirstGuess order[GUESS_N])
     if (known && !previous) order[n++] = GUESS_PREVIOUS;
   }
   order[n++] = GUESS_REST;
-  if (!m->scheme->inertia && m->contact && contact_rubs(m->c)) order[n++] = GUESS_GRIPPED;
+  if (!m->scheme->inertia && m->contact) order[n++] = GUESS_GRIPPED;
   return n;
 }
 

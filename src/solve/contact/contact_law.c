@@ -60,7 +60,7 @@ ContactState contact_law(const ContactLaw *law, const WallPlace *place, const Pe
   const PetscReal *n = place->normal;
   PetscReal trial[3], slope = 0;
   *now = (ContactForce){.pressure = multiplier->pressure - law->penalty * place->gap};
-  if (now->pressure <= 0 && law->kind != CONTACT_BONDED) {
+  if (now->pressure <= 0 && law->kind != CONTACT_BONDED && !law->grips) {
     now->pressure = 0;
     for (int i = 0; K && i < 9; ++i) K[i] = 0;
     return CONTACT_OPEN;

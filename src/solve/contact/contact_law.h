@@ -23,7 +23,7 @@ typedef struct {
   PetscReal bond;     /* tangential force beside friction, N */
   PetscReal penalty;  /* r, N/m */
   PetscReal along;    /* r_t, N/m */
-  PetscBool grips;    /* for a first guess: whatever friction bears, it does not slide */
+  PetscBool grips;    /* for a first guess: it neither slides nor opens, whatever friction bears */
 } ContactLaw;
 
 /* What the wall does to the material, N. */

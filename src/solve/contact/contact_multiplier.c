@@ -59,8 +59,9 @@ static PetscReal goes_on(const Contact *s, const ContactPoint *c)
 
 /* Those of the last step, and as much more or less as the gap that it left takes away: of a stiff body that
  * is no little force, and if it let go everywhere at once nothing would hold it; and what rests is to stay
- * where it is. What had none and touches the wall gets one so small that it counts for nothing: it is in
- * contact from the first iteration on. */
+ * where it is. What had none and touches the wall gets one so small that it counts for nothing, beyond what
+ * takes the gap that there is: it is in contact from the first iteration on. So does in statics what had round-off for a force, which may slide on all that
+ * it touches. */
 static void first_multiplier(const Contact *s, ContactPoint *c)
 {
   const PetscReal whole = goes_on(s, c) / s->share.mean;
@@ -68,7 +69,10 @@ static void first_multiplier(const Contact *s, ContactPoint *c)
   for (int d = 0; d < 3; ++d) c->multiplier.pressure += whole * c->last[d] * c->normal[d];
   for (int d = 0; d < 3; ++d) c->multiplier.shear[d] = whole * c->last[d] - c->multiplier.pressure * c->normal[d];
   if (c->before != CONTACT_OPEN && c->open > -CLOSED * s->length) c->multiplier.pressure += c->law.penalty * c->open;
-  if (c->touches && c->before == CONTACT_OPEN) c->multiplier.pressure = BARELY * s->length * c->law.penalty;
+  const PetscReal barely = (BARELY * s->length + PetscMax(c->open, 0)) * c->law.penalty;
+  const PetscBool goes =
+    (PetscBool)(s->share.moves || c->law.kind == CONTACT_BONDED || c->multiplier.pressure > barely);
+  if (c->touches && (c->before == CONTACT_OPEN || !goes)) c->multiplier = (ContactForce){.pressure = barely};
 }
 
 /* What a cell of one material opposes to a pressure, N/m3; of two that stand behind each other. */
@@ -136,8 +140,10 @@ static PetscBool is_carried(const Contact *s, const ContactPoint *c)
 {
   PetscReal along = 0, square = 0, pressure = 0;
   const PetscBool touched = (PetscBool)(c->touches || c->before != CONTACT_OPEN);
-  if (!touched || c->law.kind == CONTACT_FRICTIONLESS || c->law.kind == CONTACT_BONDED) return PETSC_FALSE;
+  if (!touched || c->law.kind == CONTACT_BONDED) return PETSC_FALSE;
   for (int d = 0; d < 3; ++d) along += c->swept[d] * c->facing[d], pressure += c->last[d] * c->facing[d];
+  if (-along * c->law.penalty > pressure + 1e-9 * s->length * c->law.penalty) return PETSC_TRUE; /* it goes away */
+  if (c->law.kind == CONTACT_FRICTIONLESS) return PETSC_FALSE;
   for (int d = 0; d < 3; ++d) square += PetscSqr(c->swept[d] - along * c->facing[d]);
   return (PetscBool)(PetscSqrtReal(square) * c->law.along >
                      contact_most(&c->law, pressure) + 1e-9 * s->length * c->law.along);

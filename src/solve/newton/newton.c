@@ -174,7 +174,7 @@ static PetscErrorCode Miss(Newton *n, PetscReal *norm)
   PetscFunctionReturn(0);
 }
 
-/* A step of Newton's as if nothing that was in contact could slide. */
+/* A step of Newton's as if nothing that was in contact could slide or open. */
 static PetscErrorCode Grip(Newton *n, PetscBool *solved)
 {
   Contact *contact = n->problem->scene.contact;
