@@ -423,7 +423,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(ModelInitialise(m));
   PetscCall(ForcesCreate(m, diag));
   if (m->method->clouds) PetscCall(ModelWarnOfObstacles(m, diag));
-  PetscCall(CheckHeld(m, diag));
+  if (!m->time) PetscCall(CheckHeld(m, diag)); /* later bodies and walls are elsewhere: ModelTake */
   if (m->scheme->inertia) PetscCall(InitialAcceleration(m));
   else PetscCall(InitialReactions(m));
   PetscCall(EnergyStart(m));
@@ -444,6 +444,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Diag *diag, Model **mod
   m->comm = comm;
   m->c = c;
   m->dim = kinematics_dim(c->kinematics);
+  m->time = c->start; /* what a stage moves stands where it begins then */
   PetscCall(OptionsApply(m));
   PetscCall(MemoryHeld(comm, &m->machine_memory));
   PetscCall(OptionsCheck(m, diag));
