@@ -106,7 +106,8 @@ typedef struct {
   PetscReal resultant;    /* of the load's nodal forces for a factor of 1, N */
   PetscReal *nodal;       /* these, n_nodes x dim */
   LoadBorder border;
-  PetscBool rising; /* after `end` */
+  PetscBool rising;  /* after `end` */
+  PetscBool unfound; /* is the search over without a limit? */
 } Raised;
 #define RAISED_KEPT 5
 

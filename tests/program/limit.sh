@@ -141,6 +141,7 @@ says out.txt "by load = it holds: it grew by"
 cat >slides.yaml <<'END'
 kinematics: plane-strain
 method: fem
+formulation: displacement
 analysis: {type: limit-load, limit: {raise: push}}
 grid: {box: {min: [0, 0], max: [2, 0.5]}, size: 0.125}
 bodies: [{name: s, shape: {box: {min: [0, 0], max: [2, 0.5]}}, material: m}]
@@ -152,6 +153,25 @@ END
 expect "a block that slides" 0 "$talus" run slides.yaml --out slides --force
 awk -F, 'END { exit !($3 > 15.9 && $3 < 16.1) }' slides/history.csv || fail "$name: $(tail -n 1 slides/history.csv)"
 if grep -q locks err.txt; then fail "$name: $(cat err.txt)"; fi
+
+# Steps in which nothing acts yet move nothing: what touches goes on to do so. A block that is pressed askew: 8.318 by its friction and adhesion.
+cat >askew.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: limit-load, end: 1, steps: 2, limit: {raise: q}}
+grid: {box: {min: [0, 0], max: [1, 0.25]}, size: 0.0625}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 0.25]}}, material: rubber}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0.3}}
+walls: [{name: F, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, friction: 0.3, adhesion: 500}]
+loads: {tractions: [{name: q, on: {body: b, y: 0.25}, value: [342.02, -939.69]}]}
+measures: {L: {limit_load: value}}
+output: {every: end}
+END
+for way in "fem 1 2" "fem 1 3" "mpm 1 2" "mpm 2 2" "mpm 3 2"; do
+  set -- $way
+  expect "pressed askew, $way" 0 on_ranks $2 "$talus" run askew.yaml --out askew --force --quiet --set method=$1 --set analysis.steps=$3
+  awk -F, 'END { exit !($3 > 8.2 && $3 < 8.35) }' askew/history.csv || fail "$name: $(tail -n 1 askew/history.csv)"
+done
 
 # Resumed anywhere: the same bits
 expect "whole" 0 "$talus" run block.yaml --out whole --quiet --set checkpoint.steps=3 --set checkpoint.keep=99

@@ -120,6 +120,7 @@ static void warn_of_locking(const Model *m, Diag *diag)
   PetscBool single = (PetscBool)(grid->kind == GRID_BOX && cells[grid->cell].nodes > m->dim + 1);
   for (PetscInt b = 0; b < m->c->n_bodies; ++b) single &= m->c->bodies[b].points_per_cell == 1;
   if (m->formulation->pressure || m->formulation->cells || single) return;
+  if (!materials_yield(m->c->n_materials, m->materials)) return;
   diag_warning(diag, "formulation",
                "with displacements as the only unknowns what yields without a change of volume locks: the factor of "
                "safety comes out too large, or nothing fails at all");

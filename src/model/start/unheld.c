@@ -309,6 +309,7 @@ static void name_free(const Model *m, const Group *g, char text[64])
     }
     ++n;
   }
+  if (!text[0]) snprintf(text, 64, "along a line that leans");
 }
 
 /* Work of the loads of the first step along its free motions. */

@@ -296,6 +296,14 @@ static void warn_of_infinite(const MeasureSpec *measure, PetscReal value, Diag *
                measure->name);
 }
 
+static void warn_of_no_limit(const Model *m, Diag *diag)
+{
+  if (!m->raised.unfound) return;
+  diag_warning(diag, "analysis.limit.raise", "no limit was found: %s",
+               isnan(m->raised.value) ? "the search lost its way before any load stood"
+                                      : "what is told is the largest load that was reached");
+}
+
 PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
 {
   char path[256];
@@ -324,6 +332,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   PetscCall(WarnOfMovedLoads(m, diag));
   PetscCall(WarnOfShear(m, diag));
   warn_of_sunk(m, PETSC_FALSE, diag);
+  warn_of_no_limit(m, diag);
   warn_of_unstable(m, diag);
   warn_of_walls_through(m, diag);
   PetscFunctionReturn(0);

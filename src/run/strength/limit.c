@@ -194,7 +194,8 @@ PetscErrorCode LimitEnd(const LimitRun *s, Model *m, RunDir *dir)
   const char *what = found ? "limit load" : "largest load that was reached";
 
   PetscFunctionBeginUser;
-  m->raised.value = largest_load(s);
+  m->raised.unfound = !found;
+  m->raised.value = found || largest_load(s) > 0 ? largest_load(s) : NAN;
   PetscCall(TellLoad(s, dir));
   PetscCall(RunDirLog(dir, "by energy = %.1f %% of the load's last work was stored", 100 * (double)share_stored(s)));
   if (!found && m->raised.value > 0)
@@ -205,8 +206,8 @@ PetscErrorCode LimitEnd(const LimitRun *s, Model *m, RunDir *dir)
                         "lost its way at once (analysis.limit.step)",
                         (double)spec->step));
   if (case_raises_displacement(m->c))
-    PetscCall(RunDirLog(dir, "%s = %.6g N along the displacement of '%s'", what, (double)m->raised.value, spec->raise));
-  else PetscCall(RunDirLog(dir, "%s = %.6g times '%s'", what, (double)m->raised.value, spec->raise));
+    PetscCall(RunDirLog(dir, "%s = %.6g N along the displacement of '%s'", what, (double)largest_load(s), spec->raise));
+  else PetscCall(RunDirLog(dir, "%s = %.6g times '%s'", what, (double)largest_load(s), spec->raise));
   PetscFunctionReturn(0);
 }
 
