@@ -40,6 +40,7 @@ awk -F, 'END { exit !($3 > 188.3e3 && $3 < 188.6e3) }' run/history.csv || fail "
 says out.txt "N along the displacement of 'plate'"
 expect "not far enough" 0 "$talus" run plate.yaml --out run --force --set analysis.limit='{raise: plate, most: 0.01}'
 says out.txt "warning = no limit was found"
+says err.txt "warning: no limit was found: what is told is the largest load that was reached"
 
 expect "a search that is ended" 0 "$talus" run block.yaml --out run --force --set 'analysis.until=[{measure: load, above: 30}]'
 says out.txt "by load = it still rises" "warning = no limit was found"

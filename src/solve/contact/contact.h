@@ -261,8 +261,8 @@ void contact_balance(const Contact *contact, const ContactPoint *c, PetscReal f[
 PetscReal contact_stays(const Contact *contact, const ContactPoint *c);
 /* What the acceleration at the end of the step has of it more than that, as rate of momentum, N. */
 void contact_excess(const Contact *contact, const ContactPoint *c, PetscReal f[3]);
-/* Collective. In statics: does a wall go away from what it touches, or a rough one along itself, so that this would fall,
- * or slide, if it stayed? */
+/* Collective. In statics: does a wall go away from what it touches, or a rough one along itself, so that this would
+ * fall, or slide, if it stayed? */
 PetscErrorCode ContactCarries(const Contact *contact, MPI_Comm comm, PetscBool *carries);
 /* Collective. Does anything in contact move along its wall by more than what rests may, at the last assembly? */
 PetscErrorCode ContactMoves(const Contact *contact, MPI_Comm comm, PetscBool *moves);

@@ -59,9 +59,9 @@ static PetscReal goes_on(const Contact *s, const ContactPoint *c)
 
 /* Those of the last step, and as much more or less as the gap that it left takes away: of a stiff body that
  * is no little force, and if it let go everywhere at once nothing would hold it; and what rests is to stay
- * where it is. What had none and touches the wall gets one so small that it counts for nothing, beyond what
- * takes the gap that there is: it is in contact from the first iteration on. So does in statics what had round-off for a force, which may slide on all that
- * it touches. */
+ * where it is. What had none and touches the wall, and in statics what had round-off for a force, gets what takes the
+ * gap that there is and so little beyond it that it counts for nothing: it is in contact from the first iteration on,
+ * and nothing slides there. */
 static void first_multiplier(const Contact *s, ContactPoint *c)
 {
   const PetscReal whole = goes_on(s, c) / s->share.mean;
