@@ -194,11 +194,12 @@ typedef struct Model {
   Strength strength;
   InitialState initial;
   struct {
-    PetscInt n, *dof; /* of local nodes, ghosts too */
-    PetscBool *turns; /* does it hold the body from turning? else where it is */
-    PetscInt turning; /* how many do, over all ranks */
-    PetscReal size;   /* of the largest body that is held so, m */
-  } unheld;           /* directions of nodes that hold what nothing else does, in the step */
+    PetscInt n, *dof;   /* of local nodes, ghosts too */
+    PetscBool *turns;   /* does it hold the body from turning? else where it is */
+    PetscInt turning;   /* how many do, over all ranks */
+    PetscReal size;     /* of the largest body that is held so, m */
+    PetscBool along[3]; /* did nothing but that hold a body along the axis when the run began? */
+  } unheld;             /* directions of nodes that hold what nothing else does, in the step */
   Raised raised;
   PetscReal seconds[PHASE_N]; /* see model_times */
 } Model;

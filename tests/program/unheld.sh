@@ -54,6 +54,12 @@ expect "between plates" 0 "$talus" run block.yaml --out o --force --set material
   --set 'walls[1]={name: lid, shape: {half-space: {point: [0, 0.317], normal: [0, -1]}}, contact: frictionless, motion: [{displacement: {y: -0.015}}]}'
 awk -F, 'END { p = 0.4 * 0.5e8 * (1 / 0.95 - 0.95); exit !(($4 / p - 1) ^ 2 < 1e-7) }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"
 
+# A lid that has left says that nothing holds the block across it any more; along it nothing did.
+expect "a lid that leaves" 0 "$talus" run block.yaml --out o --force --set method=fem --set 'loads={}' --set 'bodies[0].shape={box: {min: [0, 0], max: [0.4, 0.3]}}' \
+  --set 'walls[0].shape={half-space: {point: [0, 0], normal: [0, 1]}}' \
+  --set 'walls[1]={name: lid, shape: {half-space: {point: [0, 0.3], normal: [0, -1]}}, contact: frictionless, motion: [{displacement: {y: -0.015}, amplitude: [[0, 0], [0.5, 1], [1, -0.5]]}]}'
+says err.txt "nothing holds 'b' in y any more"
+
 expect "interfaces" 2 "$talus" run block.yaml --out o --force --set 'bodies[1]={name: c, shape: {box: {min: [0.013, 0.317], max: [0.413, 0.417]}}, material: r}' \
   --set 'interfaces=[{name: i, between: [b, c], contact: frictionless}]'
 says err.txt "without interfaces and walls with mass"

@@ -312,6 +312,17 @@ static void name_free(const Model *m, const Group *g, char text[64])
   if (!text[0]) snprintf(text, 64, "along a line that leans");
 }
 
+/* Along which axes; of rings that is y. */
+static void note_free(Model *m, const Group *g)
+{
+  PetscReal along[RIGID];
+  for (PetscInt k = 0; k < PetscMin(m->dim, g->n); ++k) {
+    PetscReal row[RIGID] = {0};
+    row[k] = 1;
+    if (strength_of(g, row, along) >= 0.99) m->unheld.along[g->n == 1 ? 1 : k] = PETSC_TRUE;
+  }
+}
+
 /* Work of the loads of the first step along its free motions. */
 static PetscErrorCode CheckGroup(Model *m, Group *g, Diag *diag)
 {
@@ -332,6 +343,7 @@ static PetscErrorCode CheckGroup(Model *m, Group *g, Diag *diag)
   for (PetscInt f = 0; f < g->n_free; ++f) most = PetscMax(most, PetscAbsReal(sums[f]));
   snprintf(path, sizeof path, "bodies[%d]", (int)g->body);
   name_free(m, g, text);
+  note_free(m, g);
   if (most > (case_load_follows(m->c) ? OPEN_SURFACE : OUT_OF_BALANCE) * sums[RIGID]) {
     diag_error(diag, path, "nothing holds '%s' %s, and loads push it that way: %.3g of %.3g N are out of balance",
                m->c->bodies[g->body].name, text, (double)most, (double)sums[RIGID]);

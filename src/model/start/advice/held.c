@@ -123,7 +123,7 @@ static const char *balance_hint(const Model *m)
   PetscBool rubs = case_has_contact(m->c, CONTACT_STICK);
   for (PetscInt k = 0; k < m->c->n_walls; ++k) rubs |= m->c->walls[k].friction > 0;
   for (PetscInt k = 0; k < m->c->n_interfaces; ++k) rubs |= m->c->interfaces[k].friction > 0;
-  if (rubs) return "let it reach a thousandth of a cell into what is to hold it by friction";
+  if (rubs) return "let it reach a few hundredths of a cell into what is to hold it by friction";
   return m->c->n_interfaces || (m->contact && m->contact->n_rigid) ? "friction: 0.01 on what it touches"
                                                                    : "analysis: {unheld: hold}";
 }
@@ -138,6 +138,7 @@ static PetscErrorCode TellLoose(const Model *m, PetscBool ends, Diag *diag)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n * dim, &held));
   PetscCall(FindHeld(m, held));
+  for (PetscInt k = 0; k < n * dim; ++k) held[k] |= m->unheld.along[k % dim];
   for (PetscInt b = 0; b < n; ++b) {
     const char *name = m->c->bodies[b].name;
     name_directions(dim, held + b * dim, directions);
@@ -181,8 +182,7 @@ PetscErrorCode CheckHeld(Model *m, Diag *diag)
 PetscErrorCode ModelWarnLoose(Model *m, Diag *diag)
 {
   PetscFunctionBeginUser;
-  if (!m->contact || m->c->analysis.type != ANALYSIS_STATIC || m->c->analysis.unheld == UNHELD_HOLD || !m->step)
-    PetscFunctionReturn(0);
+  if (!m->contact || m->c->analysis.type != ANALYSIS_STATIC || !m->step) PetscFunctionReturn(0);
   PetscCall(ModelInitialise(m));
   m->contact->over = PETSC_TRUE;
   PetscCall(TellLoose(m, PETSC_TRUE, diag));
