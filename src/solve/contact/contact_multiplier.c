@@ -59,9 +59,9 @@ static PetscReal goes_on(const Contact *s, const ContactPoint *c)
 
 /* Those of the last step, and as much more or less as the gap that it left takes away: of a stiff body that
  * is no little force, and if it let go everywhere at once nothing would hold it; and what rests is to stay
- * where it is. What had none and touches the wall, and in statics what had round-off for a force, gets what takes the
- * gap that there is and so little beyond it that it counts for nothing: it is in contact from the first iteration on,
- * and nothing slides there. */
+ * where it is. What had none and touches the wall gets one so small that it counts for nothing: it is in contact from
+ * the first iteration on. In statics so does what had round-off for a force, which may slide on all that it touches,
+ * and there as much more as the gap that there is takes away. */
 static void first_multiplier(const Contact *s, ContactPoint *c)
 {
   const PetscReal whole = goes_on(s, c) / s->share.mean;
@@ -69,7 +69,8 @@ static void first_multiplier(const Contact *s, ContactPoint *c)
   for (int d = 0; d < 3; ++d) c->multiplier.pressure += whole * c->last[d] * c->normal[d];
   for (int d = 0; d < 3; ++d) c->multiplier.shear[d] = whole * c->last[d] - c->multiplier.pressure * c->normal[d];
   if (c->before != CONTACT_OPEN && c->open > -CLOSED * s->length) c->multiplier.pressure += c->law.penalty * c->open;
-  const PetscReal barely = (BARELY * s->length + PetscMax(c->open, 0)) * c->law.penalty;
+  const PetscReal open = s->share.moves ? 0 : PetscMax(c->open, 0);
+  const PetscReal barely = (BARELY * s->length + open) * c->law.penalty;
   const PetscBool goes =
     (PetscBool)(s->share.moves || c->law.kind == CONTACT_BONDED || c->multiplier.pressure > barely);
   if (c->touches && (c->before == CONTACT_OPEN || !goes)) c->multiplier = (ContactForce){.pressure = barely};
