@@ -189,11 +189,11 @@ static PetscErrorCode Grip(Newton *n, PetscBool *solved)
   PetscFunctionReturn(0);
 }
 
-/* Statics, where a rough wall goes along itself, or any away: bodies that it carries are left behind by any guess but the
- * last step's, slide on it everywhere then or hang in the air, and nothing tells how far they have to go. So first a few
- * steps as if what it touches could neither slide nor open: the first turns what turns along its tangent, into the wall
- * or off it, the next ones back.
- * What leaves the least is kept; where that is du, as where a body is held and the wall passes it, it stays. */
+/* Statics, where a rough wall goes along itself, or any away: bodies that it carries are left behind by any guess but
+ * the last step's, slide on it everywhere then or hang in the air, and nothing tells how far they have to go. So first
+ * a few steps as if what it touches could neither slide nor open: the first turns what turns along its tangent, into
+ * the wall or off it, the next ones back. What leaves the least is kept; where that is du, as where a body is held and
+ * the wall passes it, it stays. */
 static PetscErrorCode Carry(Newton *n)
 {
   StepProblem *p = n->problem;
