@@ -199,7 +199,8 @@ KERNEL void strain(const int dim, const PetscBool again, Explicit *e)
   }
 }
 
-/* Work of gravity and loads, along the way that points go: of a gravity that changes its mean, as its impulses have it. */
+/* Work of gravity and loads, along the way that points go: of a gravity that changes its mean, as its impulses have
+ * it. */
 KERNEL void work(const int dim, const Model *m, Explicit *e)
 {
   PetscReal power = 0, g[3];
