@@ -260,13 +260,17 @@ PetscErrorCode CheckHeld(Model *model, Diag *diag);
 /* Collective. of (n_nodes, 0 on entry): of the bodies that share nodes, directly or through others, the first one's
  * number from 1 on, where they touch the node. */
 PetscErrorCode JoinedBodies(const Model *model, PetscReal *of);
+/* Loads out of balance, of the forces that there are: more than Newton's method leaves; of pressures on a surface whose
+ * parts go with points, and come to overlap and gape by that. */
+#define UNHELD_BALANCE 1e-6
+#define UNHELD_OPEN_SURFACE 1e-4
 /* start/unheld.c. Collective. analysis.unheld: hold: what nothing holds is told, and a mistake where the loads of the
  * first step push it. */
 PetscErrorCode UnheldCheck(Model *model, Diag *diag);
 /* Collective. After mark_fixed, in each step: as few directions of nodes as hold it. */
 PetscErrorCode UnheldHold(Model *model);
-/* Collective. Newton converged: goes on without those that keep the body from turning if they bear anything, and has
- * not converged if the others do. */
+/* step/unheld_borne.c. Collective. Newton converged: goes on without those that keep the body from turning if they bear
+ * anything, and has not converged if the others do. */
 PetscErrorCode UnheldJudge(Model *model, StepProblem *problem, const LinearProblem *linear, StepReport *report);
 /* Collective. After the first step's clouds are known: tell which bodies hang on an obstacle from
  * the start. */

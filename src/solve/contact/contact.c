@@ -80,8 +80,6 @@ static PetscErrorCode Begin(void *data, const NodalScene *scene)
   PetscFunctionReturn(0);
 }
 
-static PetscBool meets(const ContactPoint *c) { return (PetscBool)(c->touches || c->before != CONTACT_OPEN); }
-
 static PetscReal last_of(const ContactPoint *c)
 {
   return PetscSqrtReal(PetscSqr(c->last[0]) + PetscSqr(c->last[1]) + PetscSqr(c->last[2]));
@@ -97,7 +95,7 @@ static void hold(const void *data, const NodalScene *scene, unsigned char *held)
   (void)scene;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) largest = PetscMax(largest, last_of(c));
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (!meets(c) || contact_rigid(s, c) || (s->over && last_of(c) < NEXT_TO_NOTHING * largest)) continue;
+    if (!contact_touched(c) || contact_rigid(s, c) || (s->over && last_of(c) < NEXT_TO_NOTHING * largest)) continue;
     for (PetscInt e = c->first; e < c->first + c->n; ++e)
       for (PetscInt d = 0; d < s->dim; ++d)
         if (c->law.kind != CONTACT_FRICTIONLESS || PetscAbsReal(c->normal[d]) > LEANS)

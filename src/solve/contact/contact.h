@@ -242,6 +242,11 @@ PetscBool contact_meets(const Contact *contact, ContactPoint *c, const NodalScen
 /* contact_force.c, contact_multiplier.c: what the nodal force does. */
 PetscErrorCode ContactAssemble(void *contact, const NodalScene *scene, const NodalOutput *out);
 PetscErrorCode ContactAugment(void *contact, const NodalScene *scene, PetscInt change, PetscBool *again);
+/* Is it in contact, or touches what it may press, when the step begins? */
+static inline PetscBool contact_touched(const ContactPoint *c)
+{
+  return (PetscBool)(c->touches || c->before != CONTACT_OPEN);
+}
 /* What its owner keeps of it. */
 static inline PetscReal *contact_kept_of(const Contact *contact, const Points *points, const ContactPoint *c)
 {

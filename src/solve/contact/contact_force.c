@@ -85,7 +85,7 @@ PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *sce
   if (!place_of(s, c, scene->end, x, way, &place)) return PETSC_FALSE;
   for (int d = 0; d < 3; ++d) c->slip[d] = way[d] - c->swept[d], c->normal[d] = place.normal[d];
   c->gap = place.gap;
-  c->law.grips = (PetscBool)(s->grips && (c->touches || c->before != CONTACT_OPEN));
+  c->law.grips = (PetscBool)(s->grips && contact_touched(c));
   c->state = contact_law(&c->law, &place, c->slip, &c->multiplier, &c->now, K);
   return c->state != CONTACT_OPEN;
 }

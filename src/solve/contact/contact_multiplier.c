@@ -140,8 +140,7 @@ static PetscReal motion_of(const ContactPoint *c)
 static PetscBool is_carried(const Contact *s, const ContactPoint *c)
 {
   PetscReal along = 0, square = 0, pressure = 0;
-  const PetscBool touched = (PetscBool)(c->touches || c->before != CONTACT_OPEN);
-  if (!touched || c->law.kind == CONTACT_BONDED) return PETSC_FALSE;
+  if (!contact_touched(c) || c->law.kind == CONTACT_BONDED) return PETSC_FALSE;
   for (int d = 0; d < 3; ++d) along += c->swept[d] * c->facing[d], pressure += c->last[d] * c->facing[d];
   if (-along * c->law.penalty > pressure + 1e-9 * s->length * c->law.penalty) return PETSC_TRUE; /* it goes away */
   if (c->law.kind == CONTACT_FRICTIONLESS) return PETSC_FALSE;
