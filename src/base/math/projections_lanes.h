@@ -39,7 +39,7 @@ LANES_INLINE void lanes_projection(const Lanes d[6], const Lanes *eta, const Lan
   const Lanes one = (Lanes){0} + 1.0, none = {0}, x = d[0] - *eta, y = d[1] - *eta, z = d[2] - *eta;
   const Lanes adj[6] = {y * z - d[4] * d[4],    x * z - d[5] * d[5],    x * y - d[3] * d[3],
                         d[4] * d[5] - d[3] * z, d[3] * d[5] - d[4] * x, d[3] * d[4] - d[5] * y};
-  Lanes per_trace = 1.0 / (adj[0] + adj[1] + adj[2]);
+  const Lanes per_trace = 1.0 / (adj[0] + adj[1] + adj[2]);
   for (int k = 0; k < 6; ++k) {
     const Lanes one_of = adj[k] * per_trace;
     lanes_select(alike, k == 0 ? &one : &none, &one_of, &nn[k]);

@@ -55,8 +55,7 @@ LANES_INLINE void hencky_strains(const PetscBool near, HenckyTrial *t)
 {
   t->finite &= t->stretch2[2] > 0.0; /* lost to rounding: stretches 1e8 apart */
   for (int a = 0; a < 3; ++a) {
-    if (near) lanes_log_near(&t->stretch2[a], &t->strain[a]);
-    else lanes_log(&t->stretch2[a], &t->strain[a]);
+    lanes_log_by(near, &t->stretch2[a], &t->strain[a]);
     t->strain[a] *= 0.5;
   }
 }
@@ -137,8 +136,7 @@ LANES_INLINE void hencky_state(const PetscBool near, const HenckyTrial *t, const
   if (!lanes_any(&r->plastic)) return;
   for (int a = 0; a < 3; ++a) {
     const Lanes twice = 2.0 * r->elastic[a];
-    if (near) lanes_exp_near(&twice, &stretch2[a]);
-    else lanes_exp(&twice, &stretch2[a]);
+    lanes_exp_by(near, &twice, &stretch2[a]);
   }
   lanes_principal_tensor(stretch2, t->basis, flown);
   for (int k = 0; k < 6; ++k) lanes_select(&r->plastic, &flown[k], &b[k], &b[k]);

@@ -50,8 +50,7 @@ LANES_INLINE void state_lanes(const PetscBool near, const PetscReal *p, const He
     const Lanes elastic = (tau[a] - share) / (2.0 * p[MC_MU]), twice = 2.0 * elastic;
     const Lanes plastic_strain = t->strain[a] - elastic - state[7] / 3.0;
     norm2 += plastic_strain * plastic_strain;
-    if (near) lanes_exp_near(&twice, &stretch2[a]);
-    else lanes_exp(&twice, &stretch2[a]);
+    lanes_exp_by(near, &twice, &stretch2[a]);
   }
   lanes_principal_tensor(stretch2, t->basis, b);
   norm2 /= 1.0 + p[MC_M] * p[MC_M];

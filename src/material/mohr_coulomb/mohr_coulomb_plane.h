@@ -73,8 +73,7 @@ LANES_INLINE PetscBool mc_plane_trial(const PetscBool hoop, const PetscBool near
   mc_plane_axes(t);
   t->finite &= (t->stretch2[MC_B] > 0.0) & (t->b[2] > 0.0);
   for (int a = 0; a < 3; ++a) {
-    if (near) lanes_log_near(&t->stretch2[a], &t->strain[a]);
-    else lanes_log(&t->stretch2[a], &t->strain[a]);
+    lanes_log_by(near, &t->stretch2[a], &t->strain[a]);
     t->strain[a] *= 0.5;
   }
   t->z_first = t->strain[MC_A] < t->strain[MC_Z];
@@ -133,8 +132,7 @@ LANES_INLINE void mc_plane_state(const PetscBool near, const PetscReal *p, const
     const Lanes elastic = (tau[a] - share) * per_twice_mu, twice = 2.0 * elastic;
     const Lanes plastic_strain = t->strain[a] - elastic - (1.0 / 3.0) * state[7];
     norm2 += plastic_strain * plastic_strain;
-    if (near) lanes_exp_near(&twice, &stretch2[a]);
-    else lanes_exp(&twice, &stretch2[a]);
+    lanes_exp_by(near, &twice, &stretch2[a]);
   }
   mc_plane_tensor(t, stretch2, b);
   norm2 *= 1.0 / (1.0 + p[MC_M] * p[MC_M]);
