@@ -96,6 +96,11 @@ static PetscReal lame(const PetscReal *q) { return q[DP_BULK] - 2.0 / 3.0 * q[DP
 
 static PetscReal energy(const PetscReal *q, const PetscReal *state) { return hencky_energy(lame(q), q[DP_MU], state); }
 
+static void energies(const PetscReal *q, PetscInt n, PetscInt stride, const PetscReal *state, PetscReal *all)
+{
+  hencky_energies(lame(q), q[DP_MU], n, stride, state, all);
+}
+
 /* PETSC_FALSE outside the yield surface. */
 static PetscBool initial_stress(const PetscReal *q, const PetscReal sigma[6], PetscReal *state)
 {
@@ -193,6 +198,7 @@ const Law law_drucker_prager = {
   .march_plane = drucker_prager_march_plane,
   .march_space = drucker_prager_march_space,
   .energy = energy,
+  .energies = energies,
   .initial_stress = initial_stress,
   .volume = volume,
   .volume_law = volume_law,

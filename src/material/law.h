@@ -92,6 +92,8 @@ typedef struct Law {
   LawMarching march_plane, march_space;
   /* Stored elastic energy per undeformed volume, J/m3. NULL: not known, of a law from a library. */
   PetscReal (*energy)(const PetscReal *parameters, const PetscReal *state);
+  /* The same of n points, whose states are `stride` numbers apart. NULL: one by one. */
+  void (*energies)(const PetscReal *parameters, PetscInt n, PetscInt stride, const PetscReal *state, PetscReal *energy);
   /* State that carries the Cauchy stress sigma (6) with no shear history; PETSC_FALSE if there is
    * none. */
   PetscBool (*initial_stress)(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state);

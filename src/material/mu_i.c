@@ -115,6 +115,11 @@ static PetscReal energy(const PetscReal *q, const PetscReal *state)
   return hencky_energy(lame(q), q[MU_SHEAR], state);
 }
 
+static void energies(const PetscReal *q, PetscInt n, PetscInt stride, const PetscReal *state, PetscReal *all)
+{
+  hencky_energies(lame(q), q[MU_SHEAR], n, stride, state, all);
+}
+
 /* PETSC_FALSE where it would flow, or is pulled. */
 static PetscBool initial_stress(const PetscReal *q, const PetscReal sigma[6], PetscReal *state)
 {
@@ -194,6 +199,7 @@ const Law law_mu_i = {
   .march_plane = mu_i_march_plane,
   .march_space = mu_i_march_space,
   .energy = energy,
+  .energies = energies,
   .initial_stress = initial_stress,
   .volume = volume,
   .volume_law = volume_law,

@@ -287,6 +287,8 @@ PetscErrorCode ModelTractions(const Model *model, PetscInt wall, PetscInt *n, Co
 PetscErrorCode ModelWarnLoose(Model *model, Diag *diag);
 /* Stored energy of one point per undeformed volume, J/m3. */
 PetscReal model_point_energy(const Model *model, PetscInt p);
+/* The same of n points. */
+void model_point_energies(const Model *model, PetscInt first, PetscInt n, PetscReal *energy);
 /* First number of a named field of the point's state, or NULL if its law has none. */
 const PetscReal *model_state_field(const Model *model, PetscInt p, const char *name);
 /* Cauchy stress (Voigt) of one point, from its state. */

@@ -388,6 +388,31 @@ static inline void law_suite_natural_state(LawSuite *suite)
   if (suite->law->energy) assert_true(fabs(suite->law->energy(suite->material.parameters, p.old)) <= 1e-14 * modulus);
 }
 
+/* Energies of many points are those of one after the other, however far their states are apart, up to some 1e-14 of
+ * energy and of strain. */
+static inline void law_suite_energies(LawSuite *suite)
+{
+  enum { MANY = 11 };
+  const PetscInt stride = suite->law->n_state + 3;
+  PetscReal state[MANY * (LAW_MAX_STATE + 3)] = {0}, all[MANY];
+  if (!suite->law->energies) return;
+  for (int s = 0; s < 100; ++s) {
+    const PetscReal *p = suite->material.parameters;
+    for (int k = 0; k < MANY; ++k) {
+      LawPoint point = {0};
+      law_suite_random_point(suite, &point);
+      law_suite_stress(suite, &point);
+      memcpy(state + k * stride, point.state, (size_t)suite->law->n_state * sizeof *state);
+    }
+    suite->law->energies(p, MANY, stride, state, all);
+    for (int k = 0; k < MANY; ++k) {
+      const PetscReal one = suite->law->energy(p, state + k * stride), modulus = suite->material.wave_modulus;
+      if (!(fabs(all[k] - one) <= 1e-14 * (one + sqrt(modulus * one)) + 4e-30 * modulus))
+        fail_msg("%s: energy %.17g, among others %.17g", suite->law->name, (double)one, (double)all[k]);
+    }
+  }
+}
+
 /* d(energy)/d(strain) = tau. */
 static inline void law_suite_energy(LawSuite *suite)
 {
@@ -754,6 +779,7 @@ static inline void law_suite_run(const LawUnderTest *test)
   law_suite_objectivity(&suite);
   law_suite_symmetry(&suite);
   law_suite_tangent(&suite);
+  law_suite_energies(&suite);
   law_suite_energy(&suite);
   law_suite_extremes(&suite);
   law_suite_bad_increments(&suite);

@@ -173,16 +173,3 @@ LANES_INLINE void lanes_exp_near(const Lanes *x, Lanes *y)
   lanes_exp(x, &whole);
   lanes_select(&far, &whole, y, y);
 }
-
-/* near: are numbers near 1, and near 0, as a rule? */
-LANES_INLINE void lanes_log_by(const int near, const Lanes *x, Lanes *y)
-{
-  if (near) lanes_log_near(x, y);
-  else lanes_log(x, y);
-}
-
-LANES_INLINE void lanes_exp_by(const int near, const Lanes *x, Lanes *y)
-{
-  if (near) lanes_exp_near(x, y);
-  else lanes_exp(x, y);
-}

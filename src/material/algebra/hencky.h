@@ -50,12 +50,11 @@ LANES_INLINE void hencky_axes(HenckyTrial *t)
   lanes_principal_basis(v, t->basis);
 }
 
-/* near: are strains small as a rule? */
-LANES_INLINE void hencky_strains(const PetscBool near, HenckyTrial *t)
+LANES_INLINE void hencky_strains(HenckyTrial *t)
 {
   t->finite &= t->stretch2[2] > 0.0; /* lost to rounding: stretches 1e8 apart */
   for (int a = 0; a < 3; ++a) {
-    lanes_log_by(near, &t->stretch2[a], &t->strain[a]);
+    lanes_log_near(&t->stretch2[a], &t->strain[a]);
     t->strain[a] *= 0.5;
   }
 }
@@ -64,7 +63,7 @@ LANES_INLINE void hencky_spectrum(HenckyTrial *t)
 {
   hencky_check(t);
   hencky_axes(t);
-  hencky_strains(PETSC_FALSE, t);
+  hencky_strains(t);
 }
 
 /* The same for what needs no tangent: of the basis only n_1 n_1 and n_3 n_3, and in closed form, whose errors are some
@@ -82,7 +81,7 @@ LANES_INLINE void hencky_projections(HenckyTrial *t)
     for (int k = 0; k < 6; ++k) lanes_select(&apart, &turned.basis[k], &t->basis[k], &t->basis[k]);
     for (int k = 12; k < 18; ++k) lanes_select(&apart, &turned.basis[k], &t->basis[k], &t->basis[k]);
   }
-  hencky_strains(PETSC_TRUE, t);
+  hencky_strains(t);
 }
 
 /* c of n points from D_AB = d tau_A / d eps_B and the divided differences r of 12, 23, 13. */
@@ -129,14 +128,14 @@ typedef void (*HenckyLaw)(const PetscReal *parameters, PetscBool moduli, const L
                           Lanes *after, HenckyReturn *r);
 
 /* An elastic point keeps its trial b to the last bit. */
-LANES_INLINE void hencky_state(const PetscBool near, const HenckyTrial *t, const HenckyReturn *r, Lanes b[6])
+LANES_INLINE void hencky_state(const HenckyTrial *t, const HenckyReturn *r, Lanes b[6])
 {
   Lanes stretch2[3], flown[6];
   for (int k = 0; k < 6; ++k) b[k] = t->b[k];
   if (!lanes_any(&r->plastic)) return;
   for (int a = 0; a < 3; ++a) {
     const Lanes twice = 2.0 * r->elastic[a];
-    lanes_exp_by(near, &twice, &stretch2[a]);
+    lanes_exp_near(&twice, &stretch2[a]);
   }
   lanes_principal_tensor(stretch2, t->basis, flown);
   for (int k = 0; k < 6; ++k) lanes_select(&r->plastic, &flown[k], &b[k], &b[k]);
@@ -156,7 +155,7 @@ LANES_INLINE LawStatus hencky_update(HenckyLaw law, int scalars, const PetscReal
   law(p, c != NULL, t.strain, before + 6, now + 6, &r);
   lanes_principal_tensor(r.tau, t.basis, stress);
   if (state) {
-    hencky_state(PETSC_FALSE, &t, &r, now);
+    hencky_state(&t, &r, now);
     lanes_store(6 + scalars, n, now, state);
   }
   lanes_store(6, n, stress, tau);
@@ -178,7 +177,7 @@ LANES_INLINE LawStatus hencky_march(HenckyLaw law, int scalars, const PetscBool 
   hencky_projections(&t);
   law(p, PETSC_FALSE, t.strain, before + 6, now + 6, &r);
   lanes_principal_tensor(r.tau, t.basis, stress);
-  hencky_state(PETSC_TRUE, &t, &r, now);
+  hencky_state(&t, &r, now);
   lanes_store_apart(6 + scalars, march->stride, n, now, march->state);
   lanes_march_tau(plane, stress, march);
   const LaneBits good = t.finite & r.good, bad = ~good;
@@ -227,6 +226,51 @@ static inline PetscReal hencky_energy(PetscReal lambda, PetscReal mu, const Pets
     norm2 += e * e;
   }
   return 0.5 * lambda * trace * trace + mu * norm2;
+}
+
+/* The same of eight points, without axes: sums of powers of b - 1 follow each other by its invariants (Newton's
+ * identities), and
+ *
+ *   sum ln(1 + x) = sum_k (-1)^(k+1) / k sum x^k,  sum ln^2(1 + x) = sum_k 2 (-1)^k H_(k-1) / k sum x^k
+ *
+ * have all digits after twelve terms where every |x| < 1/32. */
+LANES_INLINE void hencky_energy_lanes(PetscReal lambda, PetscReal mu, const Lanes b[6], Lanes *energy)
+{
+  const Lanes x = b[0] - 1.0, y = b[1] - 1.0, z = b[2] - 1.0, xy = b[3] * b[3], yz = b[4] * b[4], zx = b[5] * b[5];
+  const Lanes e1 = x + y + z, e2 = x * y + y * z + z * x - xy - yz - zx;
+  const Lanes e3 = x * (y * z - yz) - b[3] * (b[3] * z - b[4] * b[5]) + b[5] * (b[3] * b[4] - y * b[5]);
+  const Lanes p2 = x * x + y * y + z * z + 2.0 * (xy + yz + zx);
+  Lanes last[3] = {e1, p2, e1 * p2 - e2 * e1 + 3.0 * e3}, trace = e1 - 0.5 * p2, norm2 = p2;
+  PetscReal harmonic = 1.5;
+  for (int k = 3; k <= 12; ++k) {
+    const PetscReal sign = k % 2 ? 1.0 : -1.0;
+    trace += (sign / k) * last[2];
+    norm2 -= (2.0 * sign * harmonic / k) * last[2];
+    harmonic += 1.0 / k;
+    const Lanes next = e1 * last[2] - e2 * last[1] + e3 * last[0];
+    last[0] = last[1];
+    last[1] = last[2];
+    last[2] = next;
+  }
+  trace *= 0.5;
+  *energy = 0.5 * lambda * trace * trace + 0.25 * mu * norm2;
+  const LaneBits far = ~(p2 < 0x1p-10);
+  for (int l = 0; lanes_any(&far) && l < LANES; ++l)
+    if (far[l])
+      (*energy)[l] = hencky_energy(lambda, mu, (PetscReal[6]){b[0][l], b[1][l], b[2][l], b[3][l], b[4][l], b[5][l]});
+}
+
+/* As Law.energies. */
+static inline void hencky_energies(PetscReal lambda, PetscReal mu, PetscInt n, PetscInt stride, const PetscReal *state,
+                                   PetscReal *energy)
+{
+  for (PetscInt first = 0; first < n; first += LANES) {
+    Lanes b[8], one; /* as many numbers of each at once as there are, if they are enough to be turned */
+    lanes_load_apart(stride < LANES ? 6 : PetscMax(6, LANES), stride, PetscMin(n - first, LANES),
+                     state + first * stride, b);
+    hencky_energy_lanes(lambda, mu, b, &one);
+    for (int l = 0; l < PetscMin(n - first, LANES); ++l) energy[first + l] = one[l];
+  }
 }
 
 /* Principal tau = J sigma with ln J = tr tau / 3K (NAN if there is none), and b^e that carries

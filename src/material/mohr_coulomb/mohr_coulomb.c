@@ -34,9 +34,8 @@ LANES_INLINE void trial_lanes(PetscInt n, const PetscReal *dF, const Lanes befor
 
 /* b^e of the returned stress, equivalent plastic strain and opening. An elastic point keeps its
  * trial b to the last bit. */
-LANES_INLINE void state_lanes(const PetscBool near, const PetscReal *p, const HenckyTrial *t,
-                              const Lanes before[N_STATE], const Lanes tau[3], const LaneBits *regions,
-                              Lanes state[N_STATE])
+LANES_INLINE void state_lanes(const PetscReal *p, const HenckyTrial *t, const Lanes before[N_STATE], const Lanes tau[3],
+                              const LaneBits *regions, Lanes state[N_STATE])
 {
   const Lanes share = p[MC_LAMBDA] / (3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU]) * (tau[0] + tau[1] + tau[2]), none = {0};
   const LaneBits plastic = *regions != MC_ELASTIC;
@@ -50,7 +49,7 @@ LANES_INLINE void state_lanes(const PetscBool near, const PetscReal *p, const He
     const Lanes elastic = (tau[a] - share) / (2.0 * p[MC_MU]), twice = 2.0 * elastic;
     const Lanes plastic_strain = t->strain[a] - elastic - state[7] / 3.0;
     norm2 += plastic_strain * plastic_strain;
-    lanes_exp_by(near, &twice, &stretch2[a]);
+    lanes_exp_near(&twice, &stretch2[a]);
   }
   lanes_principal_tensor(stretch2, t->basis, b);
   norm2 /= 1.0 + p[MC_M] * p[MC_M];
@@ -92,7 +91,7 @@ LANES_INLINE LawStatus update_lanes(const PetscReal *p, PetscInt n, const PetscR
   mc_return_lanes(p, t.strain, principal, &regions);
   lanes_principal_tensor(principal, t.basis, stress);
   if (state) {
-    state_lanes(PETSC_FALSE, p, &t, before, principal, &regions, now);
+    state_lanes(p, &t, before, principal, &regions, now);
     lanes_store(N_STATE, n, now, state);
   }
   lanes_store(6, n, stress, tau);
@@ -127,14 +126,13 @@ LANES_INLINE LawStatus update_in_plane(const PetscBool hoop, const PetscReal *p,
   lanes_load(N_STATE, n, old, before);
   lanes_load(9, n, dF, f);
   const Lanes in_plane[5] = {f[0], f[1], f[3], f[4], f[8]};
-  if (!mc_plane_trial(hoop, PETSC_FALSE, in_plane, before, &t))
-    return update(p, PetscMin(n, LANES), dF, old, state, tau, c);
+  if (!mc_plane_trial(hoop, in_plane, before, &t)) return update(p, PetscMin(n, LANES), dF, old, state, tau, c);
   mc_plane_return(p, &t, principal, &regions);
   mc_plane_tensor(&t, principal, stress);
   if (state) {
     now[6] = before[6];
     now[7] = before[7];
-    mc_plane_state(PETSC_FALSE, p, &t, principal, &regions, now);
+    mc_plane_state(p, &t, principal, &regions, now);
     lanes_store(N_STATE, n, now, state);
   }
   lanes_store(6, n, stress, tau);
@@ -169,14 +167,14 @@ LANES_INLINE LawStatus march_plane_lanes(const PetscReal *p, PetscInt n, const L
   PlaneTrial t;
   lanes_load_rows(5, march->dF, f);
   lanes_load_apart(N_STATE, march->stride, n, march->state, before);
-  if (!mc_plane_trial(PETSC_TRUE, PETSC_TRUE, f, before, &t))
+  if (!mc_plane_trial(PETSC_TRUE, f, before, &t))
     return march_by_update(update, N_STATE, PETSC_TRUE, p, PetscMin(n, LANES), march);
   mc_plane_return(p, &t, principal, &regions);
   mc_plane_tensor(&t, principal, stress);
   lanes_store_rows(4, stress, march->tau);
   now[6] = before[6];
   now[7] = before[7];
-  mc_plane_state(PETSC_TRUE, p, &t, principal, &regions, now);
+  mc_plane_state(p, &t, principal, &regions, now);
   lanes_store_apart(N_STATE, march->stride, n, now, march->state);
   const LaneBits bad = ~t.finite;
   return lanes_any(&bad) ? lanes_halt(N_STATE, 4, &t.finite, &t.finite, &t.det, n, before, march) : LAW_OK;
@@ -200,7 +198,7 @@ LANES_INLINE LawStatus march_space_lanes(const PetscReal *p, PetscInt n, const L
   mc_return_lanes(p, t.strain, principal, &regions);
   lanes_principal_tensor(principal, t.basis, stress);
   lanes_march_tau(PETSC_FALSE, stress, march);
-  state_lanes(PETSC_TRUE, p, &t, before, principal, &regions, now);
+  state_lanes(p, &t, before, principal, &regions, now);
   lanes_store_apart(N_STATE, march->stride, n, now, march->state);
   const LaneBits bad = ~t.finite;
   return lanes_any(&bad) ? lanes_halt(N_STATE, 6, &t.finite, &t.finite, &t.det, n, before, march) : LAW_OK;
@@ -217,6 +215,13 @@ static PetscReal apex(const PetscReal *p) { return p[MC_CUT] < INFINITY ? p[MC_C
 static PetscReal energy(const PetscReal *p, const PetscReal *state)
 {
   return hencky_energy(p[MC_LAMBDA], p[MC_MU], state) + (state[7] > 0.0 ? apex(p) * state[7] : 0.0);
+}
+
+static void energies(const PetscReal *p, PetscInt n, PetscInt stride, const PetscReal *state, PetscReal *all)
+{
+  hencky_energies(p[MC_LAMBDA], p[MC_MU], n, stride, state, all);
+  for (PetscInt k = 0; k < n; ++k)
+    if (state[k * stride + 7] > 0.0) all[k] += apex(p) * state[k * stride + 7];
 }
 
 /* PETSC_FALSE outside the yield surface. */
@@ -304,6 +309,7 @@ const Law law_mohr_coulomb = {
   .march_plane = march_plane,
   .march_space = march_space,
   .energy = energy,
+  .energies = energies,
   .initial_stress = initial_stress,
   .volume = volume,
   .volume_law = volume_law,

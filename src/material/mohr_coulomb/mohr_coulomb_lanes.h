@@ -60,22 +60,30 @@ LANES_INLINE void mc_return_lanes(const PetscReal *p, const Lanes e[3], Lanes ta
   }
 }
 
-/* Moduli d tau_A / d eps_B of each point's region. */
+/* Moduli d tau_A / d eps_B of each point's region: those of shear for all at once, of what the cut-off takes point by
+ * point. */
 LANES_INLINE void mc_moduli_lanes(const PetscReal *p, const LaneBits *regions, Lanes D[9])
 {
-  const LaneBits plane = *regions == MC_PLANE, others = *regions > MC_PLANE;
-  PetscReal elastic[9], plastic[9];
-  mc_moduli(p, MC_ELASTIC, elastic);
-  mc_moduli(p, MC_PLANE, plastic);
-  for (int k = 0; k < 9; ++k) {
-    const Lanes yes = (Lanes){0} + plastic[k], no = (Lanes){0} + elastic[k];
-    lanes_select(&plane, &yes, &no, &D[k]);
+  const LaneBits elastic = *regions == MC_ELASTIC, yields = ~elastic;
+  PetscReal of[9];
+  mc_moduli(p, MC_ELASTIC, of);
+  for (int k = 0; k < 9; ++k) D[k] = (Lanes){0} + of[k];
+  if (!lanes_any(&yields)) return;
+  for (McRegion region = MC_PLANE; region <= MC_APEX; ++region) {
+    const LaneBits here = *regions == (int64_t)region;
+    if (region != MC_PLANE && !lanes_any(&here)) continue;
+    mc_moduli(p, region, of);
+    for (int k = 0; k < 9; ++k) {
+      const Lanes one = (Lanes){0} + of[k];
+      lanes_select(&here, &one, &D[k], &D[k]);
+    }
   }
-  if (!lanes_any(&others)) return;
+  const LaneBits cut = *regions > MC_APEX;
+  if (!lanes_any(&cut)) return;
   for (int l = 0; l < LANES; ++l) {
-    if (!others[l]) continue;
-    mc_moduli(p, (McRegion)(*regions)[l], plastic);
-    for (int k = 0; k < 9; ++k) D[k][l] = plastic[k];
+    if (!cut[l]) continue;
+    mc_moduli(p, (McRegion)(*regions)[l], of);
+    for (int k = 0; k < 9; ++k) D[k][l] = of[k];
   }
 }
 

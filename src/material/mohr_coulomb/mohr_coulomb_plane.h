@@ -57,9 +57,7 @@ LANES_INLINE void mc_plane_axes(PlaneTrial *t)
   t->n_AA[1] = 0.5 - cos;
 }
 
-/* near: are strains small as a rule? */
-LANES_INLINE PetscBool mc_plane_trial(const PetscBool hoop, const PetscBool near, const Lanes f[5],
-                                      const Lanes old[MC_STATE], PlaneTrial *t)
+LANES_INLINE PetscBool mc_plane_trial(const PetscBool hoop, const Lanes f[5], const Lanes old[MC_STATE], PlaneTrial *t)
 {
   const Lanes one = (Lanes){0} + 1.0, none = {0};
   Lanes size, sum = none;
@@ -73,7 +71,7 @@ LANES_INLINE PetscBool mc_plane_trial(const PetscBool hoop, const PetscBool near
   mc_plane_axes(t);
   t->finite &= (t->stretch2[MC_B] > 0.0) & (t->b[2] > 0.0);
   for (int a = 0; a < 3; ++a) {
-    lanes_log_by(near, &t->stretch2[a], &t->strain[a]);
+    lanes_log_near(&t->stretch2[a], &t->strain[a]);
     t->strain[a] *= 0.5;
   }
   t->z_first = t->strain[MC_A] < t->strain[MC_Z];
@@ -116,8 +114,8 @@ LANES_INLINE void mc_plane_tensor(const PlaneTrial *t, const Lanes value[3], Lan
 
 /* b^e, the equivalent plastic strain and the opening, which `state` brings from before; an elastic
  * point keeps its trial b. */
-LANES_INLINE void mc_plane_state(const PetscBool near, const PetscReal *p, const PlaneTrial *t, const Lanes tau[3],
-                                 const LaneBits *regions, Lanes state[MC_STATE])
+LANES_INLINE void mc_plane_state(const PetscReal *p, const PlaneTrial *t, const Lanes tau[3], const LaneBits *regions,
+                                 Lanes state[MC_STATE])
 {
   const Lanes share = p[MC_LAMBDA] / (3.0 * p[MC_LAMBDA] + 2.0 * p[MC_MU]) * (tau[0] + tau[1] + tau[2]), none = {0};
   const LaneBits plastic = *regions != MC_ELASTIC;
@@ -132,7 +130,7 @@ LANES_INLINE void mc_plane_state(const PetscBool near, const PetscReal *p, const
     const Lanes elastic = (tau[a] - share) * per_twice_mu, twice = 2.0 * elastic;
     const Lanes plastic_strain = t->strain[a] - elastic - (1.0 / 3.0) * state[7];
     norm2 += plastic_strain * plastic_strain;
-    lanes_exp_by(near, &twice, &stretch2[a]);
+    lanes_exp_near(&twice, &stretch2[a]);
   }
   mc_plane_tensor(t, stretch2, b);
   norm2 *= 1.0 / (1.0 + p[MC_M] * p[MC_M]);

@@ -80,6 +80,11 @@ static PetscReal energy(const PetscReal *q, const PetscReal *state)
   return hencky_energy(q[SOFT_LAMBDA], q[SOFT_MU], state);
 }
 
+static void energies(const PetscReal *q, PetscInt n, PetscInt stride, const PetscReal *state, PetscReal *all)
+{
+  hencky_energies(q[SOFT_LAMBDA], q[SOFT_MU], n, stride, state, all);
+}
+
 /* PETSC_FALSE outside the yield surface of the start. */
 static PetscBool initial_stress(const PetscReal *q, const PetscReal sigma[6], PetscReal *state)
 {
@@ -212,6 +217,7 @@ const Law law_mohr_coulomb_softening = {
   .march_plane = soften_march_plane,
   .march_space = soften_march_space,
   .energy = energy,
+  .energies = energies,
   .initial_stress = initial_stress,
   .size = size,
   .reach = reach,

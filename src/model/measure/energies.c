@@ -24,10 +24,14 @@ static PetscReal kinetic(const Model *m, const MeasureSpec *s, PetscInt body)
 
 static PetscReal elastic(const Model *m, const MeasureSpec *s, PetscInt body)
 {
-  PetscReal sum = 0;
-  for (PetscInt p = 0; p < m->points->n; ++p) {
-    const PetscReal share = measure_share(m, s, body, p);
-    if (share > 0) sum += share * m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
+  PetscReal energy[LAW_BATCH], sum = 0;
+  for (PetscInt first = 0, n; first < m->points->n; first += n) {
+    n = PetscMin(LAW_BATCH, m->points->n - first);
+    model_point_energies(m, first, n, energy);
+    for (PetscInt p = first; p < first + n; ++p) {
+      const PetscReal share = measure_share(m, s, body, p);
+      if (share > 0) sum += share * m->points->real[POINT_VOLUME][p] * energy[p - first];
+    }
   }
   return sum;
 }
@@ -39,13 +43,9 @@ static PetscReal mechanical(const Model *m, const MeasureSpec *s, PetscInt body)
 
 static PetscReal dissipated(const Model *m, const MeasureSpec *s, PetscInt body)
 {
-  PetscReal sum = 0;
-  for (PetscInt p = 0; p < m->points->n; ++p) {
-    const PetscReal share = measure_share(m, s, body, p);
-    const PetscReal *work = m->points->real[POINT_WORK], *volume = m->points->real[POINT_VOLUME];
-    if (share > 0) sum += share * (work[p] - volume[p] * model_point_energy(m, p));
-  }
-  return sum;
+  PetscReal work = 0;
+  for (PetscInt p = 0; p < m->points->n; ++p) work += measure_share(m, s, body, p) * m->points->real[POINT_WORK][p];
+  return work - elastic(m, s, body);
 }
 
 static PetscErrorCode External(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)

@@ -27,6 +27,39 @@ PetscReal model_point_energy(const Model *m, PetscInt p)
   return material->law->energy(material->parameters, state);
 }
 
+/* First points of the same material, whose energies are known together. */
+static PetscInt alike(const Model *m, PetscInt first, PetscInt n)
+{
+  const PetscInt *material = m->points->material;
+  PetscInt run = 1;
+  while (run < n && material[first + run] == material[first]) ++run;
+  return run;
+}
+
+void model_point_energies(const Model *m, PetscInt first, PetscInt n, PetscReal *energy)
+{
+  const PetscInt stride = m->points->components[POINT_STATE];
+  for (PetscInt p = first, run; p < first + n; p += run, energy += run) {
+    const Material *material = &m->materials[m->points->material[p]];
+    const PetscReal *state = point_real(m->points, POINT_STATE, p);
+    const PetscBool together = material->law->energies && !m->formulation->pressure;
+    run = together ? alike(m, p, first + n - p) : 1;
+    if (together) material->law->energies(material->parameters, run, stride, state, energy);
+    else *energy = model_point_energy(m, p);
+  }
+}
+
+static PetscReal points_elastic(const Model *m)
+{
+  PetscReal energy[LAW_BATCH], sum = 0;
+  for (PetscInt first = 0, n; first < m->points->n; first += n) {
+    n = PetscMin(LAW_BATCH, m->points->n - first);
+    model_point_energies(m, first, n, energy);
+    for (PetscInt k = 0; k < n; ++k) sum += m->points->real[POINT_VOLUME][first + k] * energy[k];
+  }
+  return sum;
+}
+
 static PetscReal points_work(const Model *m)
 {
   PetscReal sum = 0;
@@ -333,10 +366,9 @@ void energy_of_points(const Model *m, PetscReal energy[2])
 
 PetscErrorCode ModelEnergies(Model *m, Energies *e)
 {
-  PetscReal local[3] = {points_kinetic(m), 0, points_work(m)}, sum[3];
+  PetscReal local[3] = {points_kinetic(m), points_elastic(m), points_work(m)}, sum[3];
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < m->points->n; ++p) local[1] += m->points->real[POINT_VOLUME][p] * model_point_energy(m, p);
   PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, m->comm));
   *e = (Energies){.kinetic = sum[0] + rigid_motion(m),
                   .elastic = sum[1],
