@@ -3,7 +3,7 @@
  *
  * A lattice node belongs to the rank of the voxel above it (the last one at the upper end of an
  * axis), the centre of a crossed voxel to that of its voxel. A rank numbers its own lattice nodes
- * lexicographically, then its centres; ghosts follow. The sides are the sets left right (x), bottom
+ * lexicographically, then its centres; ghosts follow in the same order. The sides are the sets left right (x), bottom
  * top (y), and in 3D front (lowest z) and back (highest z). */
 #include "grid/box/box.h"
 
@@ -25,18 +25,58 @@ static PetscSFNode lattice_owner(const GridBox *box, const PetscInt ijk[LATTICE]
   return node;
 }
 
+/* Voxels between these nodes: the rank's own, and those of its halo. */
+static VoxelBlock voxels_between(const GridBox *box, const VoxelBlock *nodes)
+{
+  VoxelBlock voxels = box->block[box->rank];
+  const PetscInt some = block_size(&voxels) > 0;
+  for (PetscInt d = 0; some && d < box->dim; ++d) {
+    voxels.lo[d] = nodes->lo[d];
+    voxels.hi[d] = nodes->hi[d] - 1;
+  }
+  return voxels;
+}
+
 static PetscErrorCode CountNodes(Grid *grid, const VoxelBlock *nodes)
 {
   const GridBox *box = grid->box;
 
   PetscFunctionBeginUser;
   const VoxelBlock *voxels = box->block + box->rank, owned = box_owned_nodes(box, voxels);
+  const VoxelBlock wide = voxels_between(box, nodes);
   grid->n_owned = box->first_node[box->rank + 1] - box->first_node[box->rank];
   grid->n_nodes = grid->n_owned + block_size(nodes) - block_size(&owned);
+  if (box_has_centres(box)) grid->n_nodes += block_size(&wide) - block_size(voxels);
   grid->n_nodes_global = box->first_node[box->size];
   PetscCall(PetscMalloc1(grid->n_nodes * grid->dim, &grid->x));
   PetscCall(PetscMalloc1(grid->n_nodes, &grid->global_node));
   PetscFunctionReturn(0);
+}
+
+static void place_centre(Grid *grid, const PetscInt ijk[LATTICE], PetscInt number, PetscInt node)
+{
+  const GridBox *box = grid->box;
+  grid->global_node[node] = number;
+  for (PetscInt d = 0; d < grid->dim; ++d)
+    grid->x[node * grid->dim + d] = 0.5 * (box->line[d][ijk[d]] + box->line[d][ijk[d] + 1]);
+}
+
+/* Centres of crossed voxels of the halo, which other ranks have; ghosts from *ghost on. */
+static void place_centres_beyond(Grid *grid, const VoxelBlock *nodes, PetscInt *ghost, PetscInt *leaf,
+                                 PetscSFNode *root)
+{
+  const GridBox *box = grid->box;
+  const VoxelBlock wide = voxels_between(box, nodes);
+  PetscInt ijk[LATTICE];
+  for (PetscBool more = block_first(&wide, ijk); more; more = block_next(&wide, ijk)) {
+    if (block_has(box->block + box->rank, ijk)) continue;
+    const PetscMPIInt rank = box_owner(box, ijk);
+    const VoxelBlock owned = box_owned_nodes(box, box->block + rank);
+    root[*ghost] = (PetscSFNode){.rank = rank, .index = block_size(&owned) + block_index(box->block + rank, ijk)};
+    leaf[*ghost] = grid->n_owned + *ghost;
+    place_centre(grid, ijk, box->first_node[rank] + root[*ghost].index, leaf[*ghost]);
+    ++*ghost;
+  }
 }
 
 /* Number, place and tie the lattice nodes; lattice[] gets the local number of each member of the
@@ -65,17 +105,10 @@ static PetscErrorCode PlaceLattice(Grid *grid, const VoxelBlock *nodes, PetscInt
     grid->global_node[node] = box->first_node[root[ghost].rank] + root[ghost].index;
     ++ghost;
   }
+  if (box_has_centres(box)) place_centres_beyond(grid, nodes, &ghost, leaf, root);
   PetscCall(PetscSFCreate(grid->comm, &grid->node_sf));
   PetscCall(PetscSFSetGraph(grid->node_sf, grid->n_owned, ghost, leaf, PETSC_OWN_POINTER, root, PETSC_OWN_POINTER));
   PetscFunctionReturn(0);
-}
-
-static void place_centre(Grid *grid, const PetscInt ijk[LATTICE], PetscInt node)
-{
-  const GridBox *box = grid->box;
-  grid->global_node[node] = box->first_node[box->rank] + node;
-  for (PetscInt d = 0; d < grid->dim; ++d)
-    grid->x[node * grid->dim + d] = 0.5 * (box->line[d][ijk[d]] + box->line[d][ijk[d] + 1]);
 }
 
 /* The local nodes of a voxel's corners, by their codes, and of its centre. */
@@ -101,7 +134,7 @@ static void fill_cells(Grid *grid, const VoxelBlock *nodes, const PetscInt *latt
   for (PetscBool more = block_first(voxels, ijk); more; more = block_next(voxels, ijk)) {
     const VoxelPattern *pattern = box_pattern(box, ijk);
     voxel_nodes(grid, nodes, lattice, ijk, block_size(&owned), local);
-    if (centres) place_centre(grid, ijk, local[VOXEL_CENTRE]);
+    if (centres) place_centre(grid, ijk, box->first_node[box->rank] + local[VOXEL_CENTRE], local[VOXEL_CENTRE]);
     for (PetscInt s = 0; s < n_sub; ++s, ++cell) {
       for (PetscInt i = 0; i < nn; ++i) grid->cell_node[cell * nn + i] = local[pattern->code[s][i]];
       grid->global_cell[cell] = block_index(&all, ijk) * n_sub + s;
