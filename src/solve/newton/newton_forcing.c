@@ -8,6 +8,10 @@
  * ever asked for (Eisenstat and Walker 1996; docs/experiments/linear-solvers.md). */
 #define LOOSEST 1e-4
 #define TIGHTEST 1e-8
+/* The same where an iteration of the preconditioner costs no more than a product, and its tangent, of grains that flow,
+ * is wrong by more (docs/experiments/linear-solvers.md). */
+#define LOOSEST_CHEAP 3e-3
+#define TIGHTEST_CHEAP 1e-4
 /* share of Newton's tolerance that the last solve may leave */
 #define UNSEEN 1e-3
 /* linear iterations that a set-up of multigrid costs */
@@ -17,11 +21,11 @@
 
 /* Newton's method at its best leaves (last / before)^2 of the residual: a tenth of that, and no more than what its
  * tolerance would not see. */
-static PetscReal forcing_term(const Newton *n)
+static PetscReal forcing_term(const Newton *n, PetscReal tightest, PetscReal loosest)
 {
-  if (n->before <= 0) return LOOSEST;
+  if (n->before <= 0) return loosest;
   const PetscReal falls = PetscSqr(n->last / n->before), unseen = UNSEEN * newton_tolerance(n) / n->last;
-  return PetscMax(TIGHTEST, PetscMin(LOOSEST, PetscMax(0.1 * falls, unseen)));
+  return PetscMax(tightest, PetscMin(loosest, PetscMax(0.1 * falls, unseen)));
 }
 
 /* A wall or a load that is one more unknown takes both of its solves as exact. */
@@ -72,11 +76,11 @@ PetscErrorCode NewtonForcing(Newton *n)
   KSP ksp;
 
   PetscFunctionBeginUser;
-  if (!n->learns) PetscFunctionReturn(0);
   PetscCall(SNESGetKSP(n->snes, &ksp));
   if (n->keeps) PetscCall(KeepPreconditioner(n, ksp));
   if (n->asked_tolerance) PetscFunctionReturn(0);
-  n->forcing = is_bordered(n) ? TIGHTEST : forcing_term(n);
+  if (n->learns) n->forcing = is_bordered(n) ? TIGHTEST : forcing_term(n, TIGHTEST, LOOSEST);
+  else n->forcing = is_bordered(n) ? TIGHTEST_CHEAP : forcing_term(n, TIGHTEST_CHEAP, LOOSEST_CHEAP);
   PetscCall(KSPSetTolerances(ksp, n->forcing, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   PetscFunctionReturn(0);
 }
