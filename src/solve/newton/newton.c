@@ -121,6 +121,7 @@ static PetscErrorCode StepLinearly(Newton *n, PetscBool *solved)
   PetscCall(KSPSolve(ksp, n->f, y));
   PetscCall(KSPGetConvergedReason(ksp, &reason));
   *solved = (PetscBool)(reason != KSP_DIVERGED_PC_FAILED);
+  n->spoilt |= !*solved;
   PetscCall(NewtonGetUnknowns(n, n->x));
   if (*solved) PetscCall(VecAXPY(n->x, -1, y));
   PetscCall(VecDestroy(&y));
@@ -271,7 +272,6 @@ static PetscErrorCode Iterate(Newton *n, NewtonReport *report, SNESConvergedReas
 
   PetscFunctionBeginUser;
   *reason = SNES_DIVERGED_LINEAR_SOLVE;
-  PetscCall(Carry(n));
   PetscCall(LiftPrescribed(n, &solved));
   if (solved) {
     PetscCall(NewtonGetUnknowns(n, n->x));
@@ -305,6 +305,30 @@ static PetscErrorCode Explain(Newton *n, SNESConvergedReason reason, NewtonRepor
   PetscFunctionReturn(0);
 }
 
+/* What the solver is told of the step. */
+static PetscErrorCode Begin(Newton *n)
+{
+  StepProblem *p = n->problem;
+
+  PetscFunctionBeginUser;
+  n->search.enough = p->stiff ? ENOUGH_STIFF : ENOUGH;
+  PetscCall(EliminationBegin(&n->elimination, p));
+  PetscCall(UpdateSaddle(n));
+  PetscCall(UpdateProjection(n));
+  PetscCall(SystemPrescribe(p->system, n->projects ? n->projection->held : p->fixed, p->idle));
+  PetscFunctionReturn(0);
+}
+
+/* With a solver that has no factorisation behind it that failed. */
+static PetscErrorCode BeginAnew(Newton *n, const LinearProblem *linear)
+{
+  PetscFunctionBeginUser;
+  n->built = -1;
+  PetscCall(NewtonSetUp(n, n->problem, linear));
+  PetscCall(Begin(n));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonReport *report)
 {
   const StepProblem *p = n->problem;
@@ -318,19 +342,16 @@ static PetscErrorCode NewtonTry(Newton *n, const LinearProblem *linear, NewtonRe
   PetscCall(PetscTime(&start));
   newton_rest_without_unknowns(p);
   n->before = n->last = 0;
-  n->search.enough = p->stiff ? ENOUGH_STIFF : ENOUGH;
   n->changes = n->changed = n->rescues = 0;
   n->negative = -1;
-  PetscCall(EliminationBegin(&n->elimination, p));
-  PetscCall(UpdateSaddle(n));
-  PetscCall(UpdateProjection(n));
-  PetscCall(SystemPrescribe(p->system, n->projects ? n->projection->held : p->fixed, p->idle));
+  PetscCall(Begin(n));
+  PetscCall(Carry(n));
+  if (n->spoilt) PetscCall(BeginAnew(n, linear));
   PetscCall(Iterate(n, report, &reason));
   PetscCall(Explain(n, reason, report));
   PetscCall(PetscTime(&end));
   n->t_newton += (end - start) - (n->t_points + n->t_matrix + n->t_linear - parts);
-  /* PETSc would not factorise again after a zero pivot */
-  if (reason == SNES_DIVERGED_LINEAR_SOLVE) n->built = -1;
+  if (reason == SNES_DIVERGED_LINEAR_SOLVE) n->built = -1; /* see spoilt */
   const PetscBool useless = reason == SNES_DIVERGED_LINEAR_SOLVE || reason == SNES_DIVERGED_INNER;
   n->retry = useless && !n->direct;
   n->anew = n->retry && n->stale;

@@ -15,6 +15,7 @@ struct Newton {
   PetscReal courant; /* of the step that it was set up in */
   /* the preconditioner keeps something of earlier matrices: it is made anew for every solve */
   PetscBool learns;
+  PetscBool spoilt; /* a factorisation of it has failed: PETSc would make no other */
   /* newton_forcing.c: does a preconditioner stay for several solves of this step? Solves since its set-up; is the
    * next one with it not the first? Iterations a digit of the first; the tolerance, and did the user set it? */
   PetscBool keeps;

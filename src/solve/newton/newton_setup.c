@@ -149,6 +149,7 @@ PetscErrorCode NewtonSetUp(Newton *n, StepProblem *p, const LinearProblem *linea
   PetscCall(Learns(ksp, &n->learns));
   PetscCall(NewtonForcingSetUp(n));
   n->built = p->system->builds;
+  n->spoilt = PETSC_FALSE;
   PetscCall(PetscTime(&end));
   n->t_matrix += end - start;
   PetscFunctionReturn(0);
