@@ -28,6 +28,10 @@ static ContactMotion motion_of(const Model *m, const ContactMass *whole, PetscRe
 
 PetscBool contact_holds(const Model *m) { return m->scheme->inertia && !m->scheme->middle; }
 
+/* Who asks for less of forces out of balance asks for as much less of gaps. */
+#define USUAL_RESIDUAL 1e-8
+#define LEAST_ASKED 1e-6 /* beyond it all is round-off */
+
 /* With inertia a wall's force acts over the whole step, and Newmark's formulas would weigh it as that of one end:
  * so it is asked for as much larger, and what they remember of the last step's is taken back, or it would push what
  * leaves. What rests asks for just the force that is remembered (docs/theory.md 18). */
@@ -35,12 +39,15 @@ static ContactShare share_of_force(const Model *m)
 {
   const TimeWeights w = m->scheme->weights(&m->c->analysis, 1);
   const PetscBool yields = materials_yield(m->c->n_materials, m->materials);
+  const PetscReal asked = PetscMax(LEAST_ASKED, PetscMin(1, m->c->newton.residual / USUAL_RESIDUAL));
   if (!contact_holds(m))
     return (ContactShare){.mean = 1,
+                          .asked = asked,
                           .yields = yields,
                           .moves = m->scheme->inertia,
                           .fades = m->method->restores_grid && m->control.wait == 0};
   return (ContactShare){.inertia = PETSC_TRUE,
+                        .asked = asked,
                         .flows = yields,
                         .yields = yields,
                         .moves = PETSC_TRUE,

@@ -21,7 +21,7 @@ PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **
   PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->impulse));
   PetscCall(PetscMalloc1((*contact)->n_partners * c->n_bodies, &(*contact)->divisor));
   for (PetscInt i = 0; i < (*contact)->n_partners * c->n_bodies; ++i) (*contact)->divisor[i] = 1;
-  (*contact)->share = (ContactShare){.mean = 1};
+  (*contact)->share = (ContactShare){.mean = 1, .asked = 1};
   PetscFunctionReturn(0);
 }
 

@@ -84,6 +84,7 @@ typedef struct {
   PetscBool moves;  /* has matter inertia, whatever the scheme remembers? */
   PetscBool yields; /* may it at all? What it strains by is no millionth then */
   PetscBool fades;  /* does it move through its nodes, in statics that have not failed lately? */
+  PetscReal asked;  /* share of the usual that may stay of gaps */
   PetscReal mean, back, lag;
 } ContactShare;
 

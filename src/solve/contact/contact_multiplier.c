@@ -245,13 +245,21 @@ static PetscReal travel_of(const Contact *s, const ContactPoint *c, const NodalS
   return PetscMax(counts_of(s, c, own), counts_of(s, c, c->swept));
 }
 
+/* Each change leaves a fifth of a gap, or so. */
+static PetscInt tries(const Contact *s)
+{
+  return TRIES + (PetscInt)PetscCeilReal(PetscLogReal(1 / s->share.asked) / PetscLogReal(STIFFER));
+}
+
 /* What may stay of gaps, or of slips, which `times` as much may; moved: against the wall, and at all. */
 static PetscReal allowed(const Contact *s, PetscInt change, PetscReal moved, PetscReal travelled, PetscReal times)
 {
-  const PetscReal closed = CLOSED * s->length;
-  if (s->share.flows) return PetscMax(closed, times * PetscMin(MOVED * moved, FLOWING * s->length));
-  if (s->share.yields || change >= TRIES || (s->share.moves && travelled == 0)) return closed;
-  return PetscMax(STANDING * s->length, PetscMin(closed, MOVING * travelled));
+  const PetscReal closed = CLOSED * s->length, still = STANDING * s->length, asked = s->share.asked;
+  PetscReal most = closed;
+  if (s->share.flows) most = PetscMax(closed, times * PetscMin(MOVED * moved, FLOWING * s->length));
+  else if (!s->share.yields && change < tries(s) && !(s->share.moves && travelled == 0))
+    most = PetscMin(closed, MOVING * travelled);
+  return PetscMax(still, asked * most);
 }
 
 /* What counts against ALLOWED where gaps stall. */
@@ -294,7 +302,7 @@ PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt chan
   }
   PetscCall(MPIU_Allreduce(worst, of_all, 6, MPIU_REAL, MPIU_MAX, scene->grid->comm));
   const PetscReal all = PetscMax(of_all[0], of_all[4]);
-  const PetscBool slow = change > 0 && all > STALLS * s->worst, soft = of_all[1] > CLOSED * s->length;
+  const PetscBool slow = change > 0 && all > STALLS * s->worst, soft = of_all[1] > s->share.asked * CLOSED * s->length;
   const PetscBool stalls = slow && !soft && of_all[3] <= ALLOWED * s->length;
   const PetscBool stay = of_all[0] <= allowed(s, change, of_all[2], of_all[5], 1) &&
                          of_all[4] <= allowed(s, change, of_all[2], of_all[5], SLIPS);

@@ -199,8 +199,8 @@ static const SchemaTable material = {
 
 /* --- solver and output --- */
 static const SchemaEntry newton_entries[] = {
-  KEY("residual", NUMBER, NULL, "relative to the largest force met", .fallback = "1e-8", AT_LEAST(0),
-      AT(NewtonSpec, residual)),
+  KEY("residual", NUMBER, NULL, "relative to the largest force met; below 1e-8 gaps of contacts shrink with it",
+      .fallback = "1e-8", AT_LEAST(0), AT(NewtonSpec, residual)),
   KEY("residual_absolute", NUMBER, "N", "a residual below this is converged in any case", .fallback = "0", AT_LEAST(0),
       AT(NewtonSpec, residual_absolute)),
   KEY("increment", NUMBER, NULL, "relative to the displacement of the step", .fallback = "1e-10", AT_LEAST(0),
