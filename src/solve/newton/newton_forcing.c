@@ -12,6 +12,8 @@
  * is wrong by more (docs/experiments/linear-solvers.md). */
 #define LOOSEST_CHEAP 3e-3
 #define TIGHTEST_CHEAP 1e-4
+/* Which of the points that touch bear, and by how much they rub, is settled on the way. */
+#define LOOSEST_TOUCHING 1e-3
 /* share of Newton's tolerance that the last solve may leave */
 #define UNSEEN 1e-3
 /* linear iterations that a set-up of multigrid costs */
@@ -34,6 +36,9 @@ static PetscBool is_bordered(const Newton *n)
   const StepProblem *p = n->problem;
   return p->border || (p->scene.contact && p->scene.contact->n_rigid > 0);
 }
+
+/* The loosest of cheap ones. */
+static PetscReal loosest_cheap(const Newton *n) { return n->problem->scene.contact ? LOOSEST_TOUCHING : LOOSEST_CHEAP; }
 
 /* In dynamics inertia rules the tangent, and with wide functions making one takes longer than several iterations. What
  * is eliminated reads tangents. */
@@ -80,7 +85,7 @@ PetscErrorCode NewtonForcing(Newton *n)
   if (n->keeps) PetscCall(KeepPreconditioner(n, ksp));
   if (n->asked_tolerance) PetscFunctionReturn(0);
   if (n->learns) n->forcing = is_bordered(n) ? TIGHTEST : forcing_term(n, TIGHTEST, LOOSEST);
-  else n->forcing = is_bordered(n) ? TIGHTEST_CHEAP : forcing_term(n, TIGHTEST_CHEAP, LOOSEST_CHEAP);
+  else n->forcing = is_bordered(n) ? TIGHTEST_CHEAP : forcing_term(n, TIGHTEST_CHEAP, loosest_cheap(n));
   PetscCall(KSPSetTolerances(ksp, n->forcing, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   PetscFunctionReturn(0);
 }
