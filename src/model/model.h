@@ -268,6 +268,8 @@ PetscErrorCode ModelMeasure(Model *model, const MeasureSpec *measure, PetscInt i
 PetscErrorCode MemoryAppend(MeasureMemory *memory, PetscInt n, const PetscReal *numbers);
 const char *measure_unit(const MeasureSpec *measure);
 PetscErrorCode ModelEnergies(Model *model, Energies *energies);
+/* That steps can tell from none, J: of strains, and of gaps that contact leaves. */
+PetscReal energy_unresolved(const Model *model);
 
 /* Seconds that this rank spent in each phase since the start. */
 void model_times(const Model *model, PetscReal seconds[PHASE_N]);

@@ -244,6 +244,10 @@ PetscErrorCode ContactSurvey(Model *model);
 /* Collective. The nodes know the step's end (force, v1, a1), the points still stand at its
  * start. */
 PetscErrorCode EnergyOfNodes(Model *model, PetscReal dt, EnergyStep *step);
+/* Collective. Work of what is out of balance at the start of that step, this rank's. g: gravity then; external: what
+ * acts on nodes besides, NULL: nothing. */
+PetscErrorCode UnbalancedWork(Model *model, PetscReal dt, const PetscReal *g, const PetscReal *external,
+                              PetscReal *work);
 /* Collective. Points have their new state and have moved: close the step's account. */
 PetscErrorCode EnergyClose(Model *model, EnergyStep *step);
 /* Nodal pressures of the step's start as unknowns; nothing without a mixed formulation. */

@@ -59,7 +59,8 @@ static PetscErrorCode External(Model *m, const MeasureSpec *s, PetscInt index, P
   PetscFunctionReturn(0);
 }
 
-/* What has come in against where it is now, over the largest of all. */
+/* What has come in against where it is now, over the largest of all. Of what is no more than steps leave open a share
+ * means nothing. */
 static PetscErrorCode BalanceValue(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
 {
   Energies e;
@@ -74,7 +75,7 @@ static PetscErrorCode BalanceValue(Model *m, const MeasureSpec *s, PetscInt inde
     sum += terms[k];
     largest = PetscMax(largest, PetscAbsReal(terms[k]));
   }
-  *value = largest > 0 ? sum / largest : 0;
+  *value = largest > energy_unresolved(m) ? sum / largest : 0;
   PetscFunctionReturn(0);
 }
 

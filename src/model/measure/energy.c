@@ -168,42 +168,6 @@ static PetscReal inertia_work(const Model *m, PetscReal dt)
   return mass_product(m, du, a);
 }
 
-static PetscBool is_twin(const Model *m, PetscInt node) { return m->method->clouds && cloud_is_twin(m->grid, node); }
-
-/* Where clouds are new in every step, what balanced the forces at the end of the last one no longer
- * does in these: the work of what is out of balance, by the trapezoidal rule. `external`: of nodes
- * at the step's start, whose pressures they still have beside those of its end. */
-static PetscErrorCode OutOfBalance(const Model *m, const PetscReal *g, const PetscReal *external, PetscReal *work)
-{
-  const PetscInt dofs = m->grid->n_nodes * m->dim;
-  const PetscReal damping = m->c->analysis.damping;
-  const NodalFields *n = m->nodes;
-  WeakFormInput in = weak_form_of(m, 0);
-  PetscReal *zero, *force, *history, *pressure;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc4(dofs, &zero, dofs, &force, dofs, &history, m->grid->n_nodes, &pressure));
-  for (PetscInt node = 0; n->pressure && node < m->grid->n_nodes; ++node)
-    pressure[node] = n->pressure[node] / m->pressure_scale;
-  in.pressure = n->pressure ? pressure : NULL;
-  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
-    if (n->touched[i / m->dim] && !is_twin(m, i / m->dim))
-      history[i] = (m->scheme->inertia ? n->a[i] - n->echo[i] + damping * n->v[i] : 0) - g[i % m->dim];
-  PetscCall(GridToGhosts(m->grid, m->dim, history));
-  in.du = zero;
-  in.history = history;
-  WeakFormOutput out = {.force = force};
-  PetscCall(m->formulation->assemble(&in, &out));
-  PetscCall(GridSumToOwners(m->grid, m->dim, force));
-  *work = 0;
-  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
-    if (!is_twin(m, i / m->dim)) *work += 0.5 * m->nodes->du[i] * (force[i] - (external ? external[i] : 0));
-    if (m->boundary->fixed[i]) *work -= 0.5 * m->nodes->prescribed[i] * m->nodes->held[i];
-  }
-  PetscCall(PetscFree4(zero, force, history, pressure));
-  PetscFunctionReturn(0);
-}
-
 /* What the scheme's own damping takes: work of the inertia that the forces at both ends balance, less what
  * motion gains. With Newmark's beta = 1/4, gamma = 1/2 it is nothing. mpm's nodes know of no step before. */
 static PetscReal numerical_damping(const Model *m, PetscReal dt)
@@ -308,11 +272,8 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
       held += ((1 - end) * n->held[i] + end * n->force[i]) * n->prescribed[i];
       impulse += impulse_work(m, i, dt) + lost_work(m, i);
     }
-  const PetscBool jumps = m->method->begin || (m->contact && !m->method->restores_grid);
-  if (jumps) PetscCall(MaterialsAt(m, m->time)); /* as strong as they were at the start */
-  if (jumps) PetscCall(OutOfBalance(m, g0, before, &unbalanced));
-  if (jumps) PetscCall(MaterialsAt(m, m->time + dt));
-  if (jumps) unbalanced -= contact.start;
+  PetscCall(UnbalancedWork(m, dt, g0, before, &unbalanced));
+  if (!m->method->restores_grid) unbalanced -= contact.start;
   PetscCall(PetscFree2(before, after));
   if (damping > 0) {
     const NodalField du = {{n->du, n->du}, {1, 0}}, mean = {{n->v, n->v1}, {0.5, 0.5}};
@@ -362,6 +323,11 @@ void energy_of_points(const Model *m, PetscReal energy[2])
 {
   energy[0] = points_kinetic(m);
   energy[1] = points_work(m);
+}
+
+PetscReal energy_unresolved(const Model *m)
+{
+  return m->least_energy + contact_unresolved(m->contact, m->grid->smallest);
 }
 
 PetscErrorCode ModelEnergies(Model *m, Energies *e)

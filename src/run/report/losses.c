@@ -80,8 +80,7 @@ PetscErrorCode LossesLogStep(Model *m, RunDir *dir, const StepReport *report)
 /* Is it, or what came in, more than steps leave open? */
 static PetscBool counts(const Model *m, PetscReal energy)
 {
-  const PetscReal open = m->least_energy + contact_unresolved(m->contact, m->grid->smallest);
-  return (PetscBool)(m->most_energy > 0 && PetscMax(m->most_energy, PetscAbsReal(energy)) > open);
+  return (PetscBool)(m->most_energy > 0 && PetscMax(m->most_energy, PetscAbsReal(energy)) > energy_unresolved(m));
 }
 
 static PetscReal share_of_input(const Model *m, PetscReal energy)

@@ -1,0 +1,67 @@
+#!/bin/sh
+# The account of energies closes: what prescribed motion sets anew, what a stage changes at once, what flows at a rate, and where nothing acts.
+. "$(dirname "$0")/library.sh"
+
+# worst DIR: the largest balance of its history, either sign.
+worst() {
+  awk -F, 'NR == 1 { for (k = 1; k <= NF; ++k) if ($k ~ "^balance") c = k }
+    NR > 1 { b = $c < 0 ? -$c : $c; if (!(b <= most)) most = b } END { print most + 0 }' "$1/history.csv"
+}
+
+# closes DIR: to what Newton's method leaves.
+closes() { awk -v b="$(worst "$1")" 'BEGIN { exit !(b < 1e-8) }' || fail "$name: the balance is $(worst "$1")"; }
+
+# closes_on LABEL METHODS ARGUMENT...: case.yaml with these, on 1, 2 and 3 ranks.
+closes_on() {
+  label=$1 methods=$2
+  shift 2
+  for method in $methods; do
+    for ranks in 1 2 3; do
+      expect "$label, $method on $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out run --quiet --set "method=$method" "$@"
+      closes run
+      rm -r run
+    done
+  done
+}
+
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: dynamic, end: 0.02, steps: 20, damping: 100}
+grid: {box: {min: [0, 0], max: [0.4, 0.4]}, size: 0.1}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [0.4, 0.4]}}, material: m, velocity: [0, -0.5]}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{name: f, on: {boundary: bottom}, fix: [x, y]}]
+measures: {balance: {energy: balance}, transfer: {energy: transfer}}
+output: {history: {steps: 1}}
+END
+closes_on "damped, and stopped at the start" "fem gmm mpm"
+closes_on "the same by Bossak's alpha" fem --set analysis.bossak=-0.2
+for damping in 0 100; do # the free nodes beside them go along
+  closes_on "held nodes set off, damping $damping" "fem gmm" --set analysis.damping=$damping \
+    --set 'boundary=[{name: f, on: {boundary: bottom}, velocity: {x: 1, y: 0}, amplitude: [[0, 0], [0.005, 0], [0.0051, 1], [1, 1]]}]'
+done
+
+soil='materials.m={law: j2, yield_stress: 500, density: 1000, young: 1e6, poisson: 0.3}'
+closes_on "a stage that lowers strength" "fem gmm" --set "$soil" --set 'stages=[{name: one}, {name: two, strength: {factor: 1.5}}]'
+closes_on "a stage that lets go" fem --set "$soil" \
+  --set 'stages=[{name: one}, {name: two, boundary: [{name: f, on: {boundary: bottom}, fix: [y]}]}]'
+closes_on "a stage that brings gravity along another axis" fem --set "$soil" \
+  --set 'stages=[{name: one}, {name: two, loads: {gravity: [5, -10]}}]'
+
+# what a law that flows at a rate would do in a step of no motion is none of the step's start
+grains='materials.m={law: mu-i, density: 1000, young: 1e6, poisson: 0.2, static_friction: 0.4, limit_friction: 0.7, grain_size: 0.001, grain_density: 2500}'
+closes_on "grains under a wall" "fem gmm" --set "$grains" --set 'loads={gravity: [3, -16]}' --set analysis.damping=0 \
+  --set 'walls=[{name: lid, shape: {half-space: {point: [0, 0.4], normal: [0, -1]}}, contact: stick}]'
+
+# nothing acts: round-off over round-off
+expect "nothing acts" 0 "$talus" run case.yaml --out none --quiet --set 'analysis={type: static, steps: 4}' --set formulation=mixed \
+  --set 'bodies=[{name: b, shape: {box: {min: [0, 0], max: [0.3, 0.4]}}, material: m}]' \
+  --set 'walls=[{name: heavy, shape: {box: {min: [-0.1, 0.4], max: [0.5, 0.5]}}, mass: {density: 500, free: [y]}, friction_angle: 20}]' \
+  --set 'boundary=[{name: f, on: {boundary: bottom}, fix: [y]}, {name: l, on: {boundary: left}, fix: [x]}]'
+[ "$(worst none)" = 0 ] || fail "$name: the balance is $(worst none)"
+expect "next to nothing acts" 0 "$talus" run case.yaml --out little --quiet --set 'loads={gravity: [0, -1e-3]}' --set 'analysis={type: static, steps: 4}' \
+  --set 'bodies=[{name: b, shape: {box: {min: [0, 0], max: [0.3, 0.4]}}, material: m}]'
+closes little
+
+finish
