@@ -120,6 +120,30 @@ static void test_hang(void **state)
   hang(&lme, CELL_QUADRILATERAL);
 }
 
+/* A side of the grid is held across itself to beyond what material reaches. Along it nothing holds those nodes, and
+ * nothing moves them: they take nothing of the weight. */
+static void test_beyond(void **state)
+{
+  (void)state;
+  EACH_VARIANT (k, 2) {
+    PetscReal reaction[3];
+    Bench b;
+    gmm_init(&b, k ? &usual_mls : &usual_lme, CELL_QUADRILATERAL, 0.25);
+    b.c.basis.essential = ESSENTIAL_CONSTRAINTS;
+    b.body[0].shape.max[1] = 0.5;
+    MotionSpec *top = bench_motion(&b, 1, 0.5, MOTION_FIXED, 3);
+    top->on.max[1] = 0.75;
+    bench_motion(&b, 0, 0, MOTION_FIXED, 1);
+    b.c.gravity[1] = -9.81;
+    b.c.newton.residual = 1e-11;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    CHECK(model_step(m, 1).cuts == 0, "the step was halved");
+    CALL(BoundarySum(m->boundary, m->grid, 0, m->nodes->reaction, reaction));
+    CHECK_CLOSE(reaction[1], 4905, 1e-7 * 4905);
+    CALL(ModelDestroy(&m));
+  }
+}
+
 /* The options: the paper's rule (at least six nodes, more while the condition is bad) and sets of
  * polynomials; what is not part of it is refused. */
 static void test_options(void **state)
@@ -505,7 +529,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_patch),        cmocka_unit_test(test_hang),    cmocka_unit_test(test_options),
     cmocka_unit_test(test_fly),          cmocka_unit_test(test_contact), cmocka_unit_test(test_ranks),
     cmocka_unit_test(test_obstacles),    cmocka_unit_test(test_solvers), cmocka_unit_test(test_heap),
-    cmocka_unit_test(test_given_stress),
+    cmocka_unit_test(test_given_stress), cmocka_unit_test(test_beyond),
   };
   return run_model_tests(argc, argv, tests);
 }

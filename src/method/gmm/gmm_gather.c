@@ -235,17 +235,20 @@ static PetscErrorCode GatherNodes(Discretisation *s, const Search *search)
 static PetscReal own_share(const Constraints *c, PetscInt k)
 {
   for (PetscInt i = c->start[k]; i < c->start[k + 1]; ++i)
-    if (c->node[i] == c->at[k]) return c->N[i];
+    if (c->node[i] == c->at[k]) return c->N[i * c->dim];
   return 0;
 }
 
-/* Constraints act where material reaches the node; elsewhere it moves as prescribed by itself. So
+/* A node that no material touches and nothing holds along an axis has no motion there: it is no part of the field, as
+ * where nodes move with that (gmm.c), or what it takes of a constraint's force nobody would feel.
+ *
+ * Constraints act where material reaches the node; elsewhere it moves as prescribed by itself. So
  * it does where other nodes crowd it: its coefficient, with a small share in the field, would have
  * to be huge. */
 static PetscErrorCode Release(Discretisation *s)
 {
   const PetscInt dim = s->grid->dim;
-  const Constraints *c = s->constraints;
+  Constraints *c = s->constraints;
   PetscReal *state;
 
   PetscFunctionBeginUser;
@@ -260,6 +263,7 @@ static PetscErrorCode Release(Discretisation *s)
       state[c->twin[k] * dim + d] = held ? DOF_USUAL : DOF_UNUSED;
     }
   }
+  constraints_leave_out(c, s->nodes->touched, s->boundary->fixed);
   PetscCall(GridToGhosts(s->grid, dim, state));
   for (PetscInt i = 0; i < s->grid->n_nodes * dim; ++i) s->nodes->dof[i] = (unsigned char)state[i];
   PetscCall(PetscFree(state));

@@ -44,7 +44,7 @@ static PetscErrorCode OwnRows(Projection *p, const Constraints *c, const unsigne
         if (fixed[c->node[i] * dim + d]) continue;
         e->row[e->n] = p->n_own;
         e->dof[e->n] = s->number[c->node[i]] * dim + d;
-        e->N[e->n++] = c->N[i];
+        e->N[e->n++] = c->N[i * dim + d];
       }
       p->held[c->twin[k] * dim + d] = 1;
       p->twin[p->n_own++] = (s->number[c->twin[k]] - first) * dim + d;

@@ -1,5 +1,7 @@
 #include "solve/forces/nodal_force.h"
 
+#define LEAST 0.1 /* of the field must be left, where nodes are left out */
+
 PetscErrorCode ConstraintsCreate(PetscInt dim, Constraints **constraints)
 {
   PetscFunctionBeginUser;
@@ -42,15 +44,36 @@ PetscErrorCode ConstraintsAdd(Constraints *c, PetscInt at, PetscInt twin, PetscI
   if (first + nn > c->capacity_nodes) {
     c->capacity_nodes += c->capacity_nodes / 2 + nn + 512;
     PetscCall(PetscRealloc((size_t)c->capacity_nodes * sizeof *c->node, &c->node));
-    PetscCall(PetscRealloc((size_t)c->capacity_nodes * sizeof *c->N, &c->N));
+    PetscCall(PetscRealloc((size_t)(c->capacity_nodes * c->dim) * sizeof *c->N, &c->N));
     PetscCall(PetscRealloc((size_t)c->capacity_nodes * 2 * sizeof *c->slot, &c->slot));
   }
   c->at[c->n] = at;
   c->twin[c->n] = twin;
   PetscCall(PetscArraycpy(c->node + first, node, nn));
-  PetscCall(PetscArraycpy(c->N + first, N, nn));
+  for (PetscInt i = 0; i < nn * c->dim; ++i) c->N[first * c->dim + i] = N[i / c->dim];
   c->start[++c->n] = first + nn;
   PetscFunctionReturn(0);
+}
+
+/* Component d of constraint k. */
+static void leave_out(Constraints *c, PetscInt k, PetscInt d, const unsigned char *touched, const unsigned char *held)
+{
+  PetscReal rest = 0;
+  PetscBool all = PETSC_TRUE;
+  for (PetscInt e = c->start[k]; e < c->start[k + 1]; ++e) {
+    const PetscBool moves = (PetscBool)(touched[c->node[e]] || held[c->node[e] * c->dim + d]);
+    if (moves) rest += c->N[e * c->dim + d];
+    else all = PETSC_FALSE;
+  }
+  if (all || rest < LEAST) return;
+  for (PetscInt e = c->start[k]; e < c->start[k + 1]; ++e)
+    c->N[e * c->dim + d] *= touched[c->node[e]] || held[c->node[e] * c->dim + d] ? 1 / rest : 0;
+}
+
+void constraints_leave_out(Constraints *c, const unsigned char *touched, const unsigned char *held)
+{
+  for (PetscInt k = 0; k < c->n; ++k)
+    for (PetscInt d = 0; d < c->dim; ++d) leave_out(c, k, d, touched, held);
 }
 
 PetscBool constraints_find_slots(Constraints *c, const System *system)
@@ -74,8 +97,8 @@ static void assemble_component(const Constraints *c, PetscInt k, PetscInt d, con
   PetscReal gap = -scene->prescribed[c->at[k] * dim + d];
   for (PetscInt e = c->start[k]; e < c->start[k + 1]; ++e) {
     const PetscInt i = c->node[e] * dim + d;
-    const PetscReal weight = c->scale * c->N[e];
-    gap += c->N[e] * scene->du[i];
+    const PetscReal N = c->N[e * dim + d], weight = c->scale * N;
+    gap += N * scene->du[i];
     out->force[i] -= weight * mu;
     nodal_add_tangent(out, dim, c->slot[2 * e], i, twin, -weight);
     nodal_add_tangent(out, dim, c->slot[2 * e + 1], twin, i, -weight);
@@ -98,8 +121,9 @@ void constraints_relax(const Constraints *c, const unsigned char *held, const Pe
       const PetscInt at = c->at[k] * c->dim + d;
       PetscReal gap = scale * target[at], share = 0;
       for (PetscInt e = c->start[k]; e < c->start[k + 1]; ++e) {
-        gap -= c->N[e] * v[c->node[e] * c->dim + d];
-        if (held[c->node[e] * c->dim + d]) share += PetscAbsReal(c->N[e]);
+        const PetscReal N = c->N[e * c->dim + d];
+        gap -= N * v[c->node[e] * c->dim + d];
+        if (held[c->node[e] * c->dim + d]) share += PetscAbsReal(N);
       }
       correction[at] = held[at] && share > 0.1 ? gap / share : 0;
     }

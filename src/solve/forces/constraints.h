@@ -9,9 +9,9 @@
 
 typedef struct Constraints {
   PetscInt dim, n, capacity, capacity_nodes;
-  PetscInt *start; /* n + 1 */
-  PetscInt *node;  /* cloud of constraint k: node[start[k]] .. , local */
-  PetscReal *N;
+  PetscInt *start;     /* n + 1 */
+  PetscInt *node;      /* cloud of constraint k: node[start[k]] .. , local */
+  PetscReal *N;        /* of each node, dim numbers: nodes may be left out along an axis */
   PetscInt *at, *twin; /* the node whose motion is prescribed, and its twin */
   PetscInt *slot;      /* per node of each cloud: pair (node, twin), pair (twin, node) */
   /* N/m: brings multipliers and gaps to the size of the other unknowns and forces */
@@ -24,6 +24,9 @@ PetscErrorCode ConstraintsDestroy(Constraints **constraints);
 void constraints_clear(Constraints *constraints);
 PetscErrorCode ConstraintsAdd(Constraints *constraints, PetscInt at, PetscInt twin, PetscInt nn, const PetscInt *node,
                               const PetscReal *N);
+/* Leave out, along each axis, nodes that are neither touched (n_nodes) nor held (n_nodes x dim) there; the rest of the
+ * cloud is the field. */
+void constraints_leave_out(Constraints *constraints, const unsigned char *touched, const unsigned char *held);
 /* Places of the pairs in the system's pattern; PETSC_FALSE if it lacks any. */
 PetscBool constraints_find_slots(Constraints *constraints, const System *system);
 /* One sweep that brings the field of v nearer to `target` at the constrained places, by the
