@@ -94,6 +94,16 @@ static void lend(const Projection *w, ContactPoint *c, PetscReal normal, PetscRe
   for (int d = 0; d < 3 && size > most; ++d) shear[d] *= struck / size;
 }
 
+/* shear without what is too much of it. The cone of a wall that lets nothing slide is no law of its own, but ties the
+ * force along it to a pressure: there less is given, but nothing turned back, which by 20 times what the wall has
+ * pressed too much would set off what sticks. */
+static void take_back(const ContactPoint *c, const PetscReal too_much[3], PetscReal shear[3])
+{
+  const PetscReal square = impulse_dot(3, shear, shear), along = impulse_dot(3, too_much, shear);
+  const PetscReal left = square > 0 ? 1 - PetscMax(0, PetscMin(1, along / square)) : 1;
+  for (int d = 0; d < 3; ++d) shear[d] = c->law.kind == CONTACT_STICK ? left * shear[d] : shear[d] - too_much[d];
+}
+
 /* The wall has given no more along itself, in all of the step, than friction bears of what it has given along the
  * normal. */
 static void bound_all(const Projection *w, const ContactPoint *c, PetscReal normal, PetscReal shear[3])
@@ -103,7 +113,9 @@ static void bound_all(const Projection *w, const ContactPoint *c, PetscReal norm
   for (int d = 0; d < 3; ++d) all[d] = step * c->now.shear[d] + c->struck[d] - struck * c->normal[d] + shear[d];
   const PetscReal size = PetscSqrtReal(impulse_dot(3, all, all));
   const PetscReal most = PetscMax(0, most_of_step(w, c, c->now.pressure) + c->law.friction * (struck + normal));
-  for (int d = 0; d < 3 && size > most; ++d) shear[d] -= (1 - most / size) * all[d];
+  if (size <= most) return;
+  for (int d = 0; d < 3; ++d) all[d] *= 1 - most / size;
+  take_back(c, all, shear);
 }
 
 /* The impulse p at contact point k is one that friction bears. */
