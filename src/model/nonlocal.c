@@ -1,183 +1,300 @@
 /* Means over what is around a point (docs/theory.md, "Softening over a length"): before each step,
  * of the plastic strain at its start, with the weight (1 - r^2 / R^2)^2 of a distance r and the
- * volumes of the points.
+ * volumes of the points. The sum is over all points within R, one by one.
  *
- * Points are gathered into bins of R / 4, each of which acts from its centre of volume: the work
- * for a point does not depend on how many there are. Every rank has the bins of all. */
+ * To find them points stand in rows along x, R / 4 high and wide, which begin with the lowest point
+ * of all ranks, so that the origin says nothing in it. Nor do ranks: a sum goes through its points
+ * in the same order on any number of them. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
+#include "base/exchange.h"
+#include "base/math/lanes.h"
 #include "model/model_private.h"
 
-#define BINS 4 /* of a radius */
+#define ROWS 4                  /* of a radius */
+#define MARGIN (1 + 2.0 / ROWS) /* radii: rows are asked that far, a row more than there is weight */
+#define KEYS 7                  /* numbers that the order asks, one after the other */
 
-/* Sums over points: volume, volume times value, and times place. */
+/* A point of this rank, or one of another rank near it. */
 typedef struct {
-  PetscReal at[3]; /* number of the bin along x, y, z */
-  PetscReal volume, value, x[3];
-} Bin;
+  PetscReal key[KEYS]; /* row along z and y; x, y, z; volume, and what is averaged */
+  PetscInt own;        /* number of the point, -1 of another rank's */
+} Part;
+enum { ROW_Z, ROW_Y, AT, VOLUME = AT + 3, VALUE };
 
-#define BIN_NUMBERS ((PetscInt)(sizeof(Bin) / sizeof(PetscReal)))
+/* Points in order, column by column, and first points of rows. */
+typedef struct {
+  PetscInt n, n_rows, *row;
+  Part *part;
+  PetscReal *x[3], *volume, *value;
+  PetscReal *sum; /* for each: of the weights, and of the weighted values */
+} Rows;
 
-/* By rows of x. */
-static int order(const Bin *a, const PetscReal at[3])
+/* What lies between the lowest and the highest place of points. */
+typedef struct {
+  PetscReal low[3], high[3];
+} Extent;
+
+static int compare(const void *a, const void *b)
 {
-  for (int d = 2; d >= 0; --d)
-    if (a->at[d] != at[d]) return a->at[d] < at[d] ? -1 : 1;
+  const PetscReal *left = ((const Part *)a)->key, *right = ((const Part *)b)->key;
+  for (int k = 0; k < KEYS; ++k)
+    if (left[k] != right[k]) return left[k] < right[k] ? -1 : 1;
   return 0;
 }
 
-static int compare(const void *a, const void *b) { return order(a, ((const Bin *)b)->at); }
-
-/* First of the bins that is not before `at`. */
-static PetscInt first_of(PetscInt n, const Bin *bin, const PetscReal at[3])
-{
-  PetscInt low = 0, high = n;
-  while (low < high) {
-    const PetscInt middle = low + (high - low) / 2;
-    if (order(&bin[middle], at) < 0) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}
-
-/* Add up what falls into one bin; equal ones in the order in which they came, so that sums have
- * the same bits. */
-static PetscErrorCode Merge(PetscInt *n, Bin *bin)
-{
-  PetscInt kept = 0, *place;
-  Bin *sorted;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(*n, &sorted, *n, &place));
-  PetscCall(PetscArraycpy(sorted, bin, *n));
-  qsort(sorted, (size_t)*n, sizeof *sorted, compare);
-  for (PetscInt k = 0; k < *n; ++k) { /* which of them are there, */
-    if (kept && !order(&sorted[kept - 1], sorted[k].at)) continue;
-    memcpy(sorted[kept].at, sorted[k].at, sizeof sorted->at);
-    ++kept;
-  }
-  for (PetscInt k = 0; k < kept; ++k) memset(&sorted[k].volume, 0, sizeof *sorted - offsetof(Bin, volume));
-  for (PetscInt k = 0; k < *n; ++k) { /* and their sums */
-    Bin *to = &sorted[first_of(kept, sorted, bin[k].at)];
-    to->volume += bin[k].volume;
-    to->value += bin[k].value;
-    for (int d = 0; d < 3; ++d) to->x[d] += bin[k].x[d];
-  }
-  PetscCall(PetscArraycpy(bin, sorted, kept));
-  PetscCall(PetscFree2(sorted, place));
-  *n = kept;
-  PetscFunctionReturn(0);
-}
-
-/* Those of all ranks. */
-static PetscErrorCode Share(MPI_Comm comm, PetscInt *n, Bin **bin)
-{
-  PetscMPIInt size, mine = (PetscMPIInt)(*n * BIN_NUMBERS), *count, *start;
-  PetscInt all = 0;
-  Bin *every;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  if (size == 1) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc2(size, &count, size, &start));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, comm));
-  for (PetscMPIInt r = 0; r < size; ++r) {
-    start[r] = (PetscMPIInt)all;
-    all += count[r];
-  }
-  PetscCall(PetscMalloc1(all / BIN_NUMBERS + 1, &every));
-  PetscCallMPI(MPI_Allgatherv(*bin, mine, MPIU_REAL, every, count, start, MPIU_REAL, comm));
-  PetscCall(PetscFree2(count, start));
-  PetscCall(PetscFree(*bin));
-  *bin = every;
-  *n = all / BIN_NUMBERS;
-  PetscCall(Merge(n, every));
-  PetscFunctionReturn(0);
-}
-
-/* The bins of the points of one material, on all ranks; volumes are those of now. */
-static PetscErrorCode Gather(const Model *m, PetscInt material, PetscReal edge, PetscInt *n, Bin **bin)
+/* The points of one material; volumes are those of now. */
+static PetscErrorCode Gather(const Model *m, PetscInt material, PetscInt *n, Part **part)
 {
   const PetscInt averaged = m->materials[material].law->averaged;
   const Points *points = m->points;
 
   PetscFunctionBeginUser;
   *n = 0;
-  PetscCall(PetscMalloc1(points->n + 1, bin));
+  PetscCall(PetscMalloc1(points->n + 1, part));
   for (PetscInt p = 0; p < points->n; ++p) {
-    const PetscReal volume = points->real[POINT_VOLUME][p] * points->real[POINT_J][p];
-    const PetscReal *x = point_real(points, POINT_X, p);
-    Bin *b = &(*bin)[*n];
+    Part *to = *part + *n;
     if (points->material[p] != material) continue;
-    *b = (Bin){.volume = volume, .value = volume * point_real(points, POINT_STATE, p)[averaged]};
-    for (PetscInt d = 0; d < m->dim; ++d) {
-      b->at[d] = floor(x[d] / edge);
-      b->x[d] = volume * x[d];
-    }
+    *to = (Part){.own = p};
+    for (PetscInt d = 0; d < m->dim; ++d) to->key[AT + d] = point_real(points, POINT_X, p)[d];
+    to->key[VOLUME] = points->real[POINT_VOLUME][p] * points->real[POINT_J][p];
+    to->key[VALUE] = point_real(points, POINT_STATE, p)[averaged];
     ++*n;
   }
-  PetscCall(Merge(n, *bin));
-  PetscCall(Share(m->comm, n, bin));
-  for (PetscInt k = 0; k < *n; ++k)
-    for (int d = 0; d < 3; ++d) (*bin)[k].x[d] /= (*bin)[k].volume;
   PetscFunctionReturn(0);
 }
 
-/* Weight and weighted sum of the bins of a row, x >= at[0] and <= last. */
-static void add_row(PetscInt n, const Bin *bin, const PetscReal at[3], PetscReal last, const PetscReal x[3],
-                    PetscReal radius2, PetscReal sum[2])
+/* Of the points of each rank. */
+static PetscErrorCode Extents(MPI_Comm comm, PetscInt n, const Part *part, Extent *extent)
 {
-  for (PetscInt k = first_of(n, bin, at); k < n; ++k) {
-    const Bin *b = &bin[k];
-    PetscReal r2 = 0;
-    if (b->at[1] != at[1] || b->at[2] != at[2] || b->at[0] > last) return;
-    for (int d = 0; d < 3; ++d) r2 += PetscSqr(b->x[d] - x[d]);
-    if (r2 >= radius2) continue;
-    const PetscReal weight = PetscSqr(1 - r2 / radius2);
-    sum[0] += weight * b->volume;
-    sum[1] += weight * b->value;
+  Extent own;
+
+  PetscFunctionBeginUser;
+  for (int d = 0; d < 3; ++d) {
+    own.low[d] = PETSC_MAX_REAL, own.high[d] = PETSC_MIN_REAL;
+    for (PetscInt k = 0; k < n; ++k) {
+      own.low[d] = PetscMin(own.low[d], part[k].key[AT + d]);
+      own.high[d] = PetscMax(own.high[d], part[k].key[AT + d]);
+    }
+  }
+  PetscCallMPI(MPI_Allgather(&own, 6, MPIU_REAL, extent, 6, MPIU_REAL, comm));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool is_near(const Part *part, const Extent *extent, PetscReal margin)
+{
+  for (int d = 0; d < 3; ++d) {
+    const PetscReal x = part->key[AT + d];
+    if (x < extent->low[d] - margin || x > extent->high[d] + margin) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* What other ranks' points are to hear of, message by message. */
+static PetscErrorCode Pack(PetscMPIInt size, PetscInt n, const Part *part, const Extent *extent, PetscReal margin,
+                           const PetscMPIInt *slot, const Exchange *e, Part **out)
+{
+  PetscInt at = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(e->to_start[e->n_to] + 1, out));
+  for (PetscMPIInt r = 0; r < size; ++r) /* messages are in the order of ranks */
+    for (PetscInt k = 0; k < n && slot[r] >= 0; ++k) {
+      if (!is_near(part + k, extent + r, margin)) continue;
+      (*out)[at] = part[k];
+      (*out)[at++].own = -1;
+    }
+  PetscFunctionReturn(0);
+}
+
+/* Add the other ranks' points that are near ours. */
+static PetscErrorCode Share(MPI_Comm comm, const Extent *extent, PetscReal margin, PetscInt *n, Part **part)
+{
+  PetscMPIInt size, rank, *slot;
+  PetscInt *per_rank;
+  Part *out, *all;
+  Exchange e;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(PetscCalloc2(size, &per_rank, size, &slot));
+  for (PetscMPIInt r = 0; r < size; ++r)
+    for (PetscInt k = 0; k < *n && r != rank; ++k) per_rank[r] += is_near(*part + k, extent + r, margin);
+  PetscCall(ExchangeCreate(comm, size, per_rank, slot, &e));
+  PetscCall(Pack(size, *n, *part, extent, margin, slot, &e, &out));
+  PetscCall(PetscMalloc1(*n + e.from_start[e.n_from] + 1, &all));
+  PetscCall(PetscArraycpy(all, *part, *n));
+  PetscCall(ExchangeItems(&e, sizeof *all, PETSC_FALSE, (char *)out, (char *)(all + *n)));
+  *n += e.from_start[e.n_from];
+  PetscCall(ExchangeDestroy(&e));
+  PetscCall(PetscFree2(per_rank, slot));
+  PetscCall(PetscFree(out));
+  PetscCall(PetscFree(*part));
+  *part = all;
+  PetscFunctionReturn(0);
+}
+
+/* Points of this rank, and those of others that weigh here, with the rows where they stand. */
+static PetscErrorCode Collect(const Model *m, PetscInt material, PetscReal radius, PetscInt *n, Part **part)
+{
+  PetscMPIInt size;
+  Extent *extent;
+  PetscReal low[3] = {PETSC_MAX_REAL, PETSC_MAX_REAL, PETSC_MAX_REAL};
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(m->comm, &size));
+  PetscCall(PetscMalloc1(size, &extent));
+  PetscCall(Gather(m, material, n, part));
+  PetscCall(Extents(m->comm, *n, *part, extent));
+  if (size > 1) PetscCall(Share(m->comm, extent, MARGIN * radius, n, part));
+  for (PetscMPIInt r = 0; r < size; ++r)
+    for (int d = 0; d < 3; ++d) low[d] = PetscMin(low[d], extent[r].low[d]);
+  for (PetscInt k = 0; k < *n; ++k) {
+    PetscReal *key = (*part)[k].key;
+    key[ROW_Z] = floor((key[AT + 2] - low[2]) / (radius / ROWS));
+    key[ROW_Y] = floor((key[AT + 1] - low[1]) / (radius / ROWS));
+  }
+  PetscCall(PetscFree(extent));
+  PetscFunctionReturn(0);
+}
+
+/* Lanes are read from the last point on, too. */
+static PetscErrorCode RowsCreate(const Model *m, PetscInt material, PetscReal radius, Rows *rows)
+{
+  PetscInt n;
+  Part *part;
+
+  PetscFunctionBeginUser;
+  PetscCall(Collect(m, material, radius, &n, &part));
+  if (n) qsort(part, (size_t)n, sizeof *part, compare);
+  *rows = (Rows){.n = n, .part = part};
+  PetscCall(PetscCalloc5(n + LANES, &rows->x[0], n + LANES, &rows->x[1], n + LANES, &rows->x[2], n + LANES,
+                         &rows->volume, n + LANES, &rows->value));
+  PetscCall(PetscCalloc2(n + 1, &rows->row, 2 * n, &rows->sum));
+  for (PetscInt k = 0; k < n; ++k) {
+    const PetscReal *key = part[k].key;
+    for (int d = 0; d < 3; ++d) rows->x[d][k] = key[AT + d];
+    rows->volume[k] = key[VOLUME];
+    rows->value[k] = key[VALUE];
+    if (!k || key[ROW_Z] != part[k - 1].key[ROW_Z] || key[ROW_Y] != part[k - 1].key[ROW_Y])
+      rows->row[rows->n_rows++] = k;
+  }
+  rows->row[rows->n_rows] = n;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode RowsDestroy(Rows *rows)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree5(rows->x[0], rows->x[1], rows->x[2], rows->volume, rows->value));
+  PetscCall(PetscFree2(rows->row, rows->sum));
+  PetscCall(PetscFree(rows->part));
+  PetscFunctionReturn(0);
+}
+
+/* Number of the row there, -1 if nothing stands in it. */
+static PetscInt row_at(const Rows *rows, PetscReal z, PetscReal y)
+{
+  PetscInt low = 0, high = rows->n_rows;
+  while (low < high) {
+    const PetscInt middle = low + (high - low) / 2;
+    const PetscReal *key = rows->part[rows->row[middle]].key;
+    if (key[ROW_Z] == z && key[ROW_Y] == y) return middle;
+    if (key[ROW_Z] < z || (key[ROW_Z] == z && key[ROW_Y] < y)) low = middle + 1;
+    else high = middle;
+  }
+  return -1;
+}
+
+static PetscReal sum_of(const Lanes *lanes)
+{
+  PetscReal sum = 0;
+  for (int i = 0; i < LANES; ++i) sum += (*lanes)[i];
+  return sum;
+}
+
+/* What the points from `first` to before `end` give to point k. */
+static void add_points(const Rows *rows, PetscInt k, PetscInt first, PetscInt end, PetscReal per_radius2)
+{
+  const PetscReal x = rows->x[0][k], y = rows->x[1][k], z = rows->x[2][k];
+  const Lanes none = {0};
+  Lanes number, weights = none, values = none;
+  for (int i = 0; i < LANES; ++i) number[i] = i;
+  for (PetscInt q = first; q < end; q += LANES) {
+    const Lanes dx = *(const LanesAnywhere *)(rows->x[0] + q) - x, dy = *(const LanesAnywhere *)(rows->x[1] + q) - y;
+    const Lanes dz = *(const LanesAnywhere *)(rows->x[2] + q) - z;
+    const Lanes part = 1 - (dx * dx + dy * dy + dz * dz) * per_radius2;
+    const LaneBits counts = (part > 0) & (number < (PetscReal)(end - q));
+    const Lanes weight = part * part * *(const LanesAnywhere *)(rows->volume + q);
+    Lanes counted;
+    lanes_select(&counts, &weight, &none, &counted);
+    weights += counted;
+    values += counted * *(const LanesAnywhere *)(rows->value + q);
+  }
+  rows->sum[2 * k] += sum_of(&weights);
+  rows->sum[2 * k + 1] += sum_of(&values);
+}
+
+/* What a row gives to the points of another one: from x - reach to x + reach, which move on with x. */
+static void add_row(const Rows *rows, PetscInt to, PetscInt from, PetscReal reach, PetscReal per_radius2)
+{
+  const PetscReal *x = rows->x[0];
+  const PetscInt all = rows->row[from + 1];
+  PetscInt first = rows->row[from], end = first;
+  for (PetscInt k = rows->row[to]; k < rows->row[to + 1]; ++k) {
+    if (rows->part[k].own < 0) continue;
+    while (first < all && x[first] < x[k] - reach) ++first;
+    while (end < all && x[end] <= x[k] + reach) ++end;
+    if (first < end) add_points(rows, k, first, end, per_radius2);
   }
 }
 
-/* The bin of the point itself is among them: there is always a weight. */
-static PetscReal mean_at(PetscInt dim, PetscInt n, const Bin *bin, const PetscReal *place, PetscReal radius)
+/* Least distance of rows that are so many apart. */
+static PetscReal gap(int apart, PetscReal radius) { return PetscMax(PetscAbs(apart) - 1, 0) * radius / ROWS; }
+
+/* Rows R apart have no weight for each other. */
+static void add_rows(const Rows *rows, PetscInt to, PetscInt dim, PetscReal radius)
 {
-  const PetscReal edge = radius / BINS;
-  PetscReal at[3] = {0}, x[3] = {0}, middle[3] = {0}, sum[2] = {0};
-  for (PetscInt d = 0; d < dim; ++d) {
-    x[d] = place[d];
-    middle[d] = floor(x[d] / edge);
-  }
-  at[0] = middle[0] - BINS - 1;
-  for (int z = dim == 3 ? -BINS - 1 : 0; z <= (dim == 3 ? BINS + 1 : 0); ++z)
-    for (int y = -BINS - 1; y <= BINS + 1; ++y) {
-      at[1] = middle[1] + y;
-      at[2] = middle[2] + z;
-      add_row(n, bin, at, middle[0] + BINS + 1, x, radius * radius, sum);
+  const PetscReal *key = rows->part[rows->row[to]].key;
+  const int across = dim == 3 ? ROWS : 0;
+  for (int z = -across; z <= across; ++z)
+    for (int y = -ROWS; y <= ROWS; ++y) {
+      const PetscReal reach2 = PetscSqr(radius) - PetscSqr(gap(y, radius)) - PetscSqr(gap(z, radius));
+      const PetscInt from = reach2 > 0 ? row_at(rows, key[ROW_Z] + z, key[ROW_Y] + y) : -1;
+      if (from >= 0) add_row(rows, to, from, PetscSqrtReal(reach2), 1 / PetscSqr(radius));
     }
-  return sum[1] / sum[0];
+}
+
+/* The point itself is among them: there is always a weight. */
+static PetscErrorCode Hear(Model *m, PetscInt i, PetscReal radius)
+{
+  const Material *material = &m->materials[i];
+  Rows rows;
+
+  PetscFunctionBeginUser;
+  PetscCall(RowsCreate(m, i, radius, &rows));
+  for (PetscInt r = 0; r < rows.n_rows; ++r) add_rows(&rows, r, m->dim, radius);
+  for (PetscInt k = 0; k < rows.n; ++k) {
+    const PetscInt p = rows.part[k].own;
+    if (p < 0) continue;
+    material->law->hear(material->parameters, rows.sum[2 * k + 1] / rows.sum[2 * k],
+                        point_real(m->points, POINT_STATE, p));
+  }
+  PetscCall(RowsDestroy(&rows));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode NonlocalStep(Model *m)
 {
   PetscLogDouble clock;
-  PetscInt n;
-  Bin *bin;
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&clock));
   for (PetscInt i = 0; i < m->c->n_materials; ++i) {
     const Material *material = &m->materials[i];
     const PetscReal radius = material->law->reach ? material->law->reach(material->parameters) : 0;
-    if (!(radius > 0)) continue;
-    PetscCall(Gather(m, i, radius / BINS, &n, &bin));
-    for (PetscInt p = 0; p < m->points->n; ++p) {
-      if (m->points->material[p] != i) continue;
-      const PetscReal mean = mean_at(m->dim, n, bin, point_real(m->points, POINT_X, p), radius);
-      material->law->hear(material->parameters, mean, point_real(m->points, POINT_STATE, p));
-    }
-    PetscCall(PetscFree(bin));
+    if (radius > 0) PetscCall(Hear(m, i, radius));
   }
   PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
   PetscFunctionReturn(0);

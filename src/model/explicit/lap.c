@@ -215,7 +215,9 @@ PetscErrorCode LapBegin(Model *m, Explicit *e, PetscReal left)
   e->box = e->box && !asks_for_all(m); /* a body force may have come since */
   PetscCall(See(m, e));
   if (e->critical == 0 || e->since >= LAP_MOST) {
-    PetscCall(NonlocalStep(m));
+    PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
+    PetscCall(NonlocalStep(m)); /* with a clock of its own */
+    PetscCall(PetscTime(&clock));
     PetscCall(ExplicitCritical(m, &e->critical, &e->crossing, &e->fastest));
     e->since = 0;
   }
