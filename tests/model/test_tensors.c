@@ -1,6 +1,7 @@
 /* Stress and strain as measures: uniform and linear fields put on the points by hand, at places of the
  * material and over parts of it. */
 #include "case_builder.h"
+#include "clouds.h"
 
 /* Cauchy stress, Pa: linear in x, y, z. */
 static void field(const PetscReal *x, PetscInt dim, PetscReal sigma[6])
@@ -43,6 +44,7 @@ static void check_places(const char *method, CellType cell)
   PetscReal sigma[6];
   Bench b;
   bench_init(&b, method, cell, cell < CELL_TETRAHEDRON ? 6 : 4);
+  if (!strcmp(method, "gmm")) b.c.basis = usual_lme;
   bench_motion(&b, 1, 0, MOTION_FIXED, 7);
   for (int k = 0; k < N_PLACES; ++k) {
     MeasureSpec *s = bench_tracer(&b, "stress", 0, places[k][0], places[k][1], places[k][2]);
@@ -70,6 +72,9 @@ static void test_places(void **state)
   check_places("fem", CELL_QUADRILATERAL);
   check_places("mpm", CELL_HEXAHEDRON);
   check_places("fem", CELL_TETRAHEDRON);
+  check_places("gmm", CELL_QUADRILATERAL); /* whose points are in no cell */
+  check_places("gmm", CELL_TRIANGLE);
+  check_places("gmm", CELL_HEXAHEDRON);
 }
 
 /* Of a linear field that of the middle; of a shape its own middle. */

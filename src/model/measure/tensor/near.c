@@ -47,12 +47,15 @@ static PetscReal spacing_of(const Model *m, PetscInt p)
   return PetscPowReal(volume / thickness, 1.0 / (PetscReal)m->dim);
 }
 
+/* The cell of a point, -1 if it has none: points of a cloud keep the number of one that is gone. */
+static PetscInt cell_of(const Model *m, PetscInt p) { return m->grid->cloud ? -1 : m->points->cell[p]; }
+
 /* How far points are asked along each axis. */
 static void reach_of(const Model *m, PetscInt p, PetscReal reach[3])
 {
   PetscReal x[CELL_MAX_NODES * 3], side[3] = {1, 1, 1}, least = PETSC_MAX_REAL, most = 0, product = 1;
-  const PetscInt nodes = m->points->cell[p] < 0 ? 0 : cells[grid_cell_type(m->grid, m->points->cell[p])].nodes;
-  if (nodes) grid_cell_x(m->grid, m->points->cell[p], x);
+  const PetscInt cell = cell_of(m, p), nodes = cell < 0 ? 0 : cells[grid_cell_type(m->grid, cell)].nodes;
+  if (nodes) grid_cell_x(m->grid, cell, x);
   for (PetscInt d = 0; nodes && d < m->dim; ++d) {
     PetscReal low = x[d], high = x[d];
     for (PetscInt i = 0; i < nodes; ++i)
