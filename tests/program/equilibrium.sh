@@ -36,3 +36,12 @@ for ranks in 1 2 3; do
   says err.txt "the run gave up: Newton did not converge" "nothing resists at 15 of 25 nodes" "m in 'heap'" "type: dynamic"
   lacks err.txt "PETSC ERROR"
 done
+# What has cohesion and no tension lacks no cohesion.
+both='boundary=[{on: {y: 0}, fix: [y]}, {on: {x: 0}, fix: [x]}, {on: {y: 1}, displacement: {y: 0.1}}, {on: {x: 1}, displacement: {x: 0.1}}]'
+set -- --force --quiet --set method=fem --set "$both" --set 'loads={gravity: [0, -1]}'
+cut='materials.sand={law: mohr-coulomb, density: 1500, young: 1e6, poisson: 0.3, cohesion: 1e4, friction_angle: 30, tension_cutoff: 0, opening_memory: 1}'
+expect "no tension" 1 "$talus" run case.yaml --out cut "$@" --set "$cut"
+says err.txt "nothing resists at 21 of 25 nodes" "give it some tension (raise \`tension_cutoff\`; it has cohesion), or let it move (type: dynamic)"
+expect "neither" 1 "$talus" run case.yaml --out cut "$@" --set "$cut" --set materials.sand.cohesion=0
+says err.txt "give it some cohesion and tension (\`tension_cutoff\`), or let it move"
+finish

@@ -3,12 +3,14 @@
  * moves them by kilometres. */
 #include "solve/newton/newton_private.h"
 #include <limits.h>
+#include <string.h>
 
 /* Of the largest diagonal: less is none. */
 #define NO_STIFFNESS 1e-14
 /* Of the largest increment: as much moves with it. */
 #define AS_FAR 0.9
-#define PLACE 96 /* characters of a place */
+#define PLACE 96        /* characters of a place */
+#define UNLIMITED 1e300 /* a strength that is none */
 
 /* Diagonals of the tangent at local nodes (n_nodes x dim), and the largest of those that are free. */
 static PetscErrorCode Diagonals(const Newton *n, PetscReal *diagonal, PetscReal *largest)
@@ -76,6 +78,26 @@ static const char *place_text(const Newton *n, const PetscReal x[3], char text[P
   return text;
 }
 
+static PetscReal parameter(const MaterialSpec *material, const char *name, PetscReal otherwise)
+{
+  for (PetscInt k = 0; k < material->n_parameters; ++k)
+    if (!strcmp(material->parameters[k].name, name)) return material->parameters[k].value;
+  return otherwise;
+}
+
+/* What would hold the body together: where a cut-off ends its tension no cohesion does. */
+static const char *what_it_lacks(const Case *c, PetscInt body)
+{
+  for (PetscInt k = 0; k < c->n_materials; ++k) {
+    const MaterialSpec *material = c->materials + k;
+    if (strcmp(material->name, c->bodies[body].material) != 0) continue;
+    if (parameter(material, "tension_cutoff", UNLIMITED) >= UNLIMITED) break;
+    return parameter(material, "cohesion", 0) > 0 ? "some tension (raise `tension_cutoff`; it has cohesion)"
+                                                  : "some cohesion and tension (`tension_cutoff`)";
+  }
+  return "some cohesion";
+}
+
 PetscErrorCode NewtonLooseReason(Newton *n, const char **reason)
 {
   const StepProblem *p = n->problem;
@@ -98,8 +120,9 @@ PetscErrorCode NewtonLooseReason(Newton *n, const char **reason)
   if (!found) PetscFunctionReturn(0);
   snprintf(n->loose, sizeof n->loose,
            "nothing resists at %d of %d nodes, as around %s m in '%s': it has no stiffness there, as grains that are "
-           "apart; hold it together, give it some cohesion, or let it move (type: dynamic)",
-           (int)all[0], (int)all[1], place_text(n, x, place), p->scene.c->bodies[body].name);
+           "apart; hold it together, give it %s, or let it move (type: dynamic)",
+           (int)all[0], (int)all[1], place_text(n, x, place), p->scene.c->bodies[body].name,
+           what_it_lacks(p->scene.c, body));
   *reason = n->loose;
   PetscFunctionReturn(0);
 }

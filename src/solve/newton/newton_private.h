@@ -53,7 +53,7 @@ struct Newton {
   /* of multipliers in this solve (NodalForce.augment), and the iteration of the last one */
   PetscInt changes, changed;
   PetscReal *rigid;  /* of walls with mass: where the direction begins, and it: pairs */
-  char loose[384];   /* what is told of one that nothing holds, or of nodes that nothing resists at */
+  char loose[512];   /* what is told of one that nothing holds, or of nodes that nothing resists at */
   PetscBool tangent; /* do the system's values belong to du? */
   double t_points, t_matrix, t_linear, t_newton;
   double solving; /* when the linear solve that is going on began */
