@@ -47,7 +47,7 @@ refused "truncated" "case.yaml:" "error: "
 # Keys
 changed "unknown key" 's/young/yung/' "case.yaml:9:45: error: key 'yung' of materials.rubber is not known" "did you mean 'young'?"
 changed "duplicate key" 's/^loads/method: fem\nloads/' "case.yaml:12:1: error: key 'method' stands twice in the file (first in line 3)"
-changed "missing key" '/^method/d' "error: key 'method' of the file is missing"
+changed "missing key" '/^method/d' "case.yaml:1:1: error: key 'method' of the file is missing"
 changed "wrong type" 's/90e6/stiff/' "case.yaml:9:52: error: materials.rubber.young must be a number > 0" "not 'stiff'"
 changed "number for a list" 's/fix: \[x, y\]/fix: 3/' "case.yaml:11:" "boundary[0].fix"
 changed "list for a number" 's/90e6/[1, 2]/' "case.yaml:9:52: error: materials.rubber.young must be a number"

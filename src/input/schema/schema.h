@@ -167,6 +167,7 @@ typedef struct {
   PetscReal least, most;
 } SchemaMagnitude;
 extern const SchemaMagnitude schema_magnitudes[];
+#define SCHEMA_LARGEST_FACTOR 1e30 /* of an amplitude */
 /* The same without messages and bounds. */
 PetscBool schema_parse_number(const YamlNode *node, PetscReal *value);
 PetscBool schema_parse_integer(const YamlNode *node, PetscInt *value);

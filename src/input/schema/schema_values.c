@@ -177,10 +177,22 @@ PetscErrorCode SchemaReadCounts(SchemaReader *r, const SchemaEntry *e, const Yam
   PetscFunctionReturn(0);
 }
 
+/* As numbers beyond what their unit can mean: it makes one of any load. */
+static PetscBool read_factor(SchemaReader *r, const YamlNode *node, PetscReal *value)
+{
+  const SchemaEntry number = {.key = "factor", .type = TYPE_NUMBER, .help = ""};
+  char path[512];
+  if (!schema_number(r, &number, node, value)) return PETSC_FALSE;
+  if (PetscAbsReal(*value) <= SCHEMA_LARGEST_FACTOR) return PETSC_TRUE;
+  SchemaError(r, node, "%s: a factor of %g cannot be meant, nothing is larger than %g",
+              yaml_path(node, path, sizeof(path)), (double)*value, SCHEMA_LARGEST_FACTOR);
+  return PETSC_FALSE;
+}
+
 PetscErrorCode SchemaReadAmplitude(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
   Amplitude *a = (Amplitude *)((char *)target + e->offset);
-  const SchemaEntry number = {.key = e->key, .type = TYPE_NUMBER, .help = ""};
+  const SchemaEntry time = {.key = e->key, .type = TYPE_NUMBER, .help = ""};
   char path[512];
 
   PetscFunctionBeginUser;
@@ -192,8 +204,8 @@ PetscErrorCode SchemaReadAmplitude(SchemaReader *r, const SchemaEntry *e, const 
     const YamlNode *pair = node->child[i];
     if (pair->kind != YAML_SEQUENCE || pair->n != 2)
       SchemaError(r, pair, "%s must be a pair [time in s, factor]", yaml_path(pair, path, sizeof(path)));
-    else if (schema_number(r, &number, pair->child[0], &a->time[i]) &&
-             schema_number(r, &number, pair->child[1], &a->value[i]) && i > 0 && a->time[i] <= a->time[i - 1])
+    else if (schema_number(r, &time, pair->child[0], &a->time[i]) && read_factor(r, pair->child[1], &a->value[i]) &&
+             i > 0 && a->time[i] <= a->time[i - 1])
       SchemaError(r, pair, "%s: times must grow from pair to pair", yaml_path(pair, path, sizeof(path)));
   }
   PetscFunctionReturn(0);

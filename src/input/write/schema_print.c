@@ -211,6 +211,7 @@ static void markdown_magnitudes(FILE *out)
     else fputs("  |", out);
     fprintf(out, " %g |\n", (double)m->most);
   }
+  fprintf(out, "| (factors of an amplitude) |  | %g |\n", SCHEMA_LARGEST_FACTOR);
 }
 
 static void markdown_fields(FILE *out)

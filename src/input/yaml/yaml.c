@@ -207,9 +207,7 @@ void yaml_place(const YamlDocument *document, const YamlNode *node, PetscBool ke
     if (asprintf(&file, "--set %s", document->arguments[node->argument - 1]) < 0) file = NULL;
     *line = file;
     *place = (DiagPlace){.file = file, .width = 1};
-    /* about the file as a whole */
-  } else if (key && !node->parent) yaml_place_at(document, (YamlPlace){0}, line, place);
-  else yaml_place_at(document, key && node->key_place.line > 0 ? node->key_place : node->place, line, place);
+  } else yaml_place_at(document, key && node->key_place.line > 0 ? node->key_place : node->place, line, place);
 }
 
 void yaml_error(const YamlDocument *document, Diag *diag, const YamlNode *node, PetscBool key, const char *format, ...)

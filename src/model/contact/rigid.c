@@ -4,13 +4,16 @@
 
 static PetscInt count(const Model *m) { return m->contact ? m->contact->n_rigid : 0; }
 
-/* Of one that is there, and not to come with a later stage. */
-static void refuse(const Model *m, const char *key, const char *what, const char *instead, Diag *diag)
+/* Of one that is there, and not to come with a later stage; told where the wall gets its mass, since what asks may
+ * stand nowhere in the file. */
+static void refuse(const Model *m, const char *what, const char *instead, Diag *diag)
 {
+  char path[64];
   for (PetscInt k = 0; k < count(m); ++k) {
     const WallSpec *wall = &m->c->walls[m->contact->rigid[k].wall];
     if (wall->absent) continue;
-    diag_error(diag, key, "%s knows nothing of walls with mass, as '%s' is", what, wall->name);
+    snprintf(path, sizeof path, "walls[%d].mass", (int)m->contact->rigid[k].wall);
+    diag_error(diag, path, "%s knows nothing of walls with mass, as '%s' is", what, wall->name);
     diag_hint(diag, "%s", instead);
     return;
   }
@@ -19,10 +22,10 @@ static void refuse(const Model *m, const char *key, const char *what, const char
 void rigid_check(const Model *m, Diag *diag)
 {
   if (case_seeks(&m->c->analysis))
-    refuse(m, "analysis", "the search for a factor of safety or a limit load",
+    refuse(m, "the search for a factor of safety or a limit load",
            "without `mass` it stands where it is, or moves as `motion` says", diag);
   if (m->c->initial.equilibrium > EQUILIBRIUM_NONE)
-    refuse(m, "initial", "an initial equilibrium",
+    refuse(m, "an initial equilibrium",
            "let it come with the next stage (`absent: true` until then), or begin without one: "
            "`initial: {equilibrium: none}`",
            diag);

@@ -333,7 +333,7 @@ static const SchemaTable initial = {.name = "initial",
 
 /* --- the whole file --- */
 static const SchemaEntry case_entries[] = {
-  KEY("title", TEXT, NULL, "a line for people", .fallback = "", AT(Case, title)),
+  KEY("title", TEXT, NULL, "a line for people; it may be empty", .fallback = "", AT(Case, title)),
   KEY("kinematics", MEMBER, NULL, "dimension and symmetry", .registry = (const void *const *)kinematics_list, REQUIRED,
       AT(Case, kinematics)),
   KEY("method", WORD_TEXT, NULL, "numerical method", .registry = (const void *const *)methods, REQUIRED,
