@@ -44,4 +44,25 @@ expect "no tension" 1 "$talus" run case.yaml --out cut "$@" --set "$cut"
 says err.txt "nothing resists at 21 of 25 nodes" "give it some tension (raise \`tension_cutoff\`; it has cohesion), or let it move (type: dynamic)"
 expect "neither" 1 "$talus" run case.yaml --out cut "$@" --set "$cut" --set materials.sand.cohesion=0
 says err.txt "give it some cohesion and tension (\`tension_cutoff\`), or let it move"
+
+# A disk between rough walls is held by none that it touches in a point, and the hint says how far it must reach into them.
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 4}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.1}
+bodies: [{name: disk, shape: {circle: {centre: [0.5, 0.5], radius: 0.35}}, material: rubber}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0.3}}
+walls:
+  - {name: low, shape: {half-space: {point: [0, 0.15], normal: [0, 1]}}, friction: 0.3}
+  - {name: high, shape: {half-space: {point: [0, 0.85], normal: [0, -1]}}, friction: 0.3, motion: [{displacement: {y: -0.02}}]}
+END
+for basis in cell gimp bspline; do
+  expect "a disk that touches, $basis" 2 "$talus" check case.yaml --set "basis={$basis: {}}"
+  says err.txt "nothing holds 'disk'" "a few hundredths of a cell"
+  for hundredths in 3 5; do
+    expect "a disk that reaches $hundredths hundredths, $basis" 0 "$talus" check case.yaml --set "basis={$basis: {}}" \
+      --set "walls[0].shape.half-space.point=[0, 0.15$hundredths]" --set "walls[1].shape.half-space.point=[0, 0.84$((10 - hundredths))]"
+  done
+done
 finish
