@@ -123,6 +123,7 @@ typedef struct {
   /* height against gravity at which the user believes the material to end, m: only compared */
   PetscReal surface;
   PetscBool absent; /* not yet, or no more: a stage places and removes */
+  PetscBool leaves; /* does a later stage take it away? */
 } BodySpec;
 
 /* Where something acts: every condition given must hold. */
@@ -495,6 +496,8 @@ PetscInt case_columns(const Case *c);
 const MeasureSpec *case_column(const Case *c, PetscInt k);
 PetscInt case_column_of(const Case *c, const char *name);  /* its index, -1: there is none */
 PetscInt case_measure_of(const Case *c, const char *name); /* likewise, among the measures of c itself */
+/* When all stages are read: which bodies later ones take away. */
+void case_tell_leaving(Case *c);
 /* When all stages are read; case_columns are those of c alone before. */
 PetscErrorCode CaseCollectColumns(Case *c);
 /* Does it start from a state that is there? Not the first stage of a case that names no run. */

@@ -1,4 +1,5 @@
 /* Stages of a case, and the time at which each begins. */
+#include <string.h>
 #include "case/case.h"
 
 PetscInt case_stages(const Case *c) { return PetscMax(1, c->n_stages); }
@@ -33,4 +34,23 @@ void case_begin(Case *c, const PetscReal *start)
   for (PetscInt k = 0; k < c->n_materials; ++k) shift_material(&c->materials[k], start);
   for (PetscInt k = 0; k < c->n_loads; ++k) c->loads[k].amplitude.origin = start[c->loads[k].amplitude.since];
   c->gravity_amplitude.origin = start[c->gravity_amplitude.since];
+}
+
+/* Is it there, and not any more in a later stage? */
+static PetscBool leaves(const Case *c, PetscInt stage, const BodySpec *body)
+{
+  for (PetscInt k = stage + 1; k < c->n_stages && !body->absent; ++k) {
+    const Case *later = c->stage_case[k];
+    PetscInt b = 0;
+    while (b < later->n_bodies && strcmp(later->bodies[b].name, body->name) != 0) ++b;
+    if (b == later->n_bodies || later->bodies[b].absent) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+void case_tell_leaving(Case *c)
+{
+  for (PetscInt k = 0; k < c->n_stages; ++k)
+    for (PetscInt b = 0; b < c->stage_case[k]->n_bodies; ++b)
+      c->stage_case[k]->bodies[b].leaves = leaves(c, k, c->stage_case[k]->bodies + b);
 }

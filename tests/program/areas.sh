@@ -177,4 +177,31 @@ sed -i 's/bodies: \[b\]/bodies: [other]/' others.yaml
 expect "a wall in its body" 2 "$talus" check others.yaml --set analysis.type=dynamic --set analysis.steps=null --set analysis.end=1 --set analysis.step=0.01
 says err.txt "wall 'right' goes through a body at the start"
 
+# --- a foot that lies almost in a plane of the grid: a body has one surface, not one in each layer of cells ---
+cat >almost.yaml <<'END'
+kinematics: 3d
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0, 0], max: [1.6, 1.6, 1.2]}, size: 0.1}
+bodies:
+  - name: b
+    shape:
+      intersection:
+        - {half-space: {point: [0.8, 0.8, 0.6], normal: [-TX, -TY, -1]}}
+        - {half-space: {point: [0.8, 0.8, 0.8], normal: [TX, TY, 1]}}
+        - {box: {min: [XL, 0.6, 0], max: [XH, 1, 1.2]}}
+    material: m
+materials: {m: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
+loads: {gravity: [0, 0, -9.81]}
+walls: [{name: w, shape: {half-space: {point: [0.8, 0.8, 0.6], normal: [TX, TY, 1]}}, contact: stick}]
+measures: {area: {contact: area, of: {wall: w}}}
+END
+for tilt in 0:0 1.7e-5:0 1e-4:3e-5 1.4e-3:1e-3 1.7e-2:5e-3; do
+  for side in 0.55:1.05 0.6:1.1; do # beside the lines of the grid, and on them
+    sed "s/TX/${tilt%:*}/g; s/TY/${tilt#*:}/g; s/XL/${side%:*}/; s/XH/${side#*:}/" almost.yaml >case.yaml
+    expect "a foot tilted by $tilt, $side" 0 "$talus" run case.yaml --out run --force --quiet
+    near area "$(last 3)" 0.2 0.01
+  done
+done
+
 finish

@@ -39,18 +39,46 @@ static PetscBool fills_cell(const SeedRule *rule, PetscInt dim)
   return (PetscBool)(PetscAbsReal(sum - (1 << dim)) < SAME);
 }
 
-/* The box's own surface in a part, as a vector outwards; of what lies along the cell's sides knows reach.c. */
-static void take_face(PetscInt dim, const Brick *part, const Brick *box, const Brick *left, const PetscReal *half,
-                      PetscReal *face)
+/* The surface of a part of a brick that is left, at its high or low end along axis d, as far as no body that this one
+ * sticks to is beyond; reference: in the reference cell, of a side of which it is a share. */
+static PetscReal area_at(const Seeding *s, CellType type, const PetscReal *x, const Brick *left, const PetscReal *half,
+                         PetscInt d, PetscBool at_high)
 {
-  for (PetscInt d = 0; d < dim; ++d) {
+  PetscReal area = 1;
+  for (PetscInt i = 0; i < s->source->dim; ++i)
+    if (i != d) area *= (half ? half[i] : 0.5) * PetscMax(0, left->high[i] - left->low[i]);
+  return area > 0 ? area * seed_bare(s, type, x, left->low, left->high, d, at_high) : 0;
+}
+
+PetscInt seed_side_of(CellType type, PetscInt d, PetscBool at_high)
+{
+  const Cell *cell = cells + type;
+  PetscInt side = 0;
+  for (; side < cell->faces; ++side) {
+    PetscBool on = PETSC_TRUE;
+    for (PetscInt i = 0; i < cell->face_nodes; ++i)
+      if ((cell->reference[cell->face[side][i]][d] > 0) != at_high) on = PETSC_FALSE;
+    if (on) break;
+  }
+  return side;
+}
+
+/* The box's own surface in a part, as a vector outwards, and what of the part lies along the cell's sides. */
+static void take_face(const Seeding *s, CellType type, const PetscReal *x, const Brick *part, const Brick *box,
+                      const Brick *left, const PetscReal *half, SeedPart *to)
+{
+  for (PetscInt d = 0; d < s->source->dim; ++d) {
     const PetscReal low = box->low[d], high = box->high[d];
-    PetscReal area = 1;
-    for (PetscInt i = 0; i < dim; ++i)
-      if (i != d) area *= half[i] * PetscMax(0, left->high[i] - left->low[i]);
-    face[d] = 0;
-    if (high < 1 - SAME && high > part->low[d] + SAME && high < part->high[d] + SAME) face[d] += area;
-    if (low > -1 + SAME && low < part->high[d] - SAME && low > part->low[d] - SAME) face[d] -= area;
+    to->face[d] = 0;
+    if (high < 1 - SAME && high > part->low[d] + SAME && high < part->high[d] + SAME)
+      to->face[d] += area_at(s, type, x, left, half, d, PETSC_TRUE);
+    if (low > -1 + SAME && low < part->high[d] - SAME && low > part->low[d] - SAME)
+      to->face[d] -= area_at(s, type, x, left, half, d, PETSC_FALSE);
+    if (left->high[d] <= left->low[d]) continue;
+    if (left->high[d] > 1 - SAME)
+      to->side[seed_side_of(type, d, PETSC_TRUE)] = area_at(s, type, x, left, NULL, d, PETSC_TRUE);
+    if (left->low[d] < -1 + SAME)
+      to->side[seed_side_of(type, d, PETSC_FALSE)] = area_at(s, type, x, left, NULL, d, PETSC_FALSE);
   }
 }
 
@@ -100,7 +128,7 @@ PetscBool seed_box_parts(const Seeding *s, CellType type, const PetscReal *x, co
       part[q].spread[d] = PetscSqr(left.high[d] - left.low[d]) / 12;
     }
     part[q].share = size_of(dim, &left) / (1 << dim);
-    if (s->faces) take_face(dim, &whole, &box, &left, half, part[q].face);
+    if (s->faces) take_face(s, type, x, &whole, &box, &left, half, part + q);
   }
   return PETSC_TRUE;
 }

@@ -1,7 +1,7 @@
 /* Cells that a body's surface cuts: each point stands for the part of its cell that is nearest
  * to it, as far as that lies in the shape. Cells are cut in halves until their simplices lie on
  * one side of the surface or are small; what that leaves of these is cut off by a plane. */
-#include "points/seed/seed.h"
+#include "points/seed/parts_private.h"
 
 enum { LOOK = 5, LOOK_TETRAHEDRON = 8 }; /* samples along an axis: is the cell cut? */
 #define WITHIN 1e-3                      /* of the cell: so far inside its sides a surface along them cuts nothing */
@@ -16,30 +16,6 @@ static const PetscInt trusted[4] = {0, 0, 6, 6}, most[4] = {0, 0, 10, 9};
  * plane, four in space. */
 #define MOST_LINES 11
 #define MOST_CROSSINGS 343
-
-typedef struct {
-  PetscReal volume, moment[3], second[3]; /* of the reference cell, times det dx/dxi */
-  PetscReal face[3];                      /* the body's surface as a vector outwards, m2 */
-} Sum;
-
-typedef struct {
-  const Shape *shape;
-  const SeedRule *rule;
-  CellType type;
-  PetscInt dim;
-  const PetscReal *x; /* nodes of the cell */
-  PetscBool straight; /* is it a rectangle along the axes, with this middle and half of these sides? */
-  PetscReal middle[3], half[3];
-  PetscInt owner;  /* whose part is measured; -1: pieces go to the nearest point of the rule */
-  PetscBool faces; /* is the surface asked for? */
-  PetscReal slack; /* m: corners on the surface shall be inside, whatever round-off says */
-  Sum whole[SEED_MAX_RULE], fine[SEED_MAX_RULE], coarse[SEED_MAX_RULE]; /* coarse: edges twice as long */
-} Measure;
-
-typedef struct {
-  PetscReal xi[4][3];
-  PetscBool inside[4];
-} Simplex;
 
 static PetscBool is_simplex(CellType type) { return cells[type].nodes == cells[type].dim + 1; }
 
@@ -103,7 +79,7 @@ static void look_whether_straight(Measure *m)
         PetscAbsReal(m->middle[d] + cell->reference[I][d] * m->half[d] - m->x[I * m->dim + d]) <= m->slack ? 1 : 0;
 }
 
-static void place_at(const Measure *m, const PetscReal *xi, PetscReal *position)
+void measure_place(const Measure *m, const PetscReal *xi, PetscReal *position)
 {
   for (PetscInt d = 0; m->straight && d < m->dim; ++d) position[d] = m->middle[d] + xi[d] * m->half[d];
   if (!m->straight) cell_position(m->type, m->x, xi, position);
@@ -120,7 +96,7 @@ static PetscReal stretch_at(const Measure *m, const PetscReal *xi)
 static PetscBool is_inside(const Measure *m, const PetscReal *xi)
 {
   PetscReal position[3];
-  place_at(m, xi, position);
+  measure_place(m, xi, position);
   return shape_contains(m->shape, m->dim, position, m->slack);
 }
 
@@ -152,8 +128,7 @@ static void add(const Measure *m, PetscReal corner[4][3], PetscReal sign, Sum *s
   }
 }
 
-/* Where the surface crosses an edge from inside to outside. */
-static void cross(const Measure *m, const PetscReal *inside, const PetscReal *outside, PetscReal *at)
+void measure_cross(const Measure *m, const PetscReal *inside, const PetscReal *outside, PetscReal *at)
 {
   PetscReal low = 0, high = 1;
   for (int k = 0; k < CROSSINGS; ++k) {
@@ -171,8 +146,8 @@ static void corner_at(const Measure *m, const Simplex *s, PetscInt at, PetscReal
   for (PetscInt d = 0; d < 3; ++d) corner[0][d] = s->xi[at][d];
   for (PetscInt i = 0; i <= m->dim; ++i) {
     if (i == at) continue;
-    if (s->inside[at]) cross(m, s->xi[at], s->xi[i], corner[n++]);
-    else cross(m, s->xi[i], s->xi[at], corner[n++]);
+    if (s->inside[at]) measure_cross(m, s->xi[at], s->xi[i], corner[n++]);
+    else measure_cross(m, s->xi[i], s->xi[at], corner[n++]);
   }
 }
 
@@ -187,7 +162,7 @@ static void add_prism(const Measure *m, const Simplex *s, Sum *sum)
     for (int d = 0; d < 3; ++d) corner[n][d] = s->xi[i][d];
     ++n;
     for (PetscInt j = 0; j < 4; ++j)
-      if (!s->inside[j]) cross(m, s->xi[i], s->xi[j], corner[n++]);
+      if (!s->inside[j]) measure_cross(m, s->xi[i], s->xi[j], corner[n++]);
   }
   for (int k = 0; k < 3; ++k) {
     for (int i = 0; i < 4; ++i)
@@ -211,44 +186,6 @@ static void add_inside(const Measure *m, Simplex *s, PetscInt n_inside, Sum *sum
   while (s->inside[at] != one) ++at;
   corner_at(m, s, at, corner);
   add(m, corner, one ? 1 : -1, sum);
-}
-
-/* Where the surface crosses the edges of a simplex, one after the other around it; returns how many. */
-static PetscInt crossings(const Measure *m, const Simplex *s, PetscReal at[4][3])
-{
-  PetscInt n = 0;
-  PetscReal xi[3];
-  for (PetscInt i = 0, turn = 0; i <= m->dim; ++i) {
-    if (!s->inside[i]) continue;
-    for (PetscInt k = 0; k <= m->dim; ++k) {
-      const PetscInt j = turn ? m->dim - k : k; /* back and forth: a quadrilateral's corners follow each other */
-      if (s->inside[j]) continue;
-      cross(m, s->xi[i], s->xi[j], xi);
-      place_at(m, xi, at[n++]);
-    }
-    turn = !turn;
-  }
-  return n;
-}
-
-/* The part of the surface in a simplex that it crosses. */
-static void add_face(const Measure *m, const Simplex *s, Sum *sum)
-{
-  PetscReal at[4][3] = {{0}}, out[3] = {0, 0, 0}, area[3] = {0, 0, 0}, position[3], along = 0;
-  const PetscInt n = crossings(m, s, at);
-  for (PetscInt i = 0; i <= m->dim; ++i) {
-    place_at(m, s->xi[i], position);
-    for (PetscInt d = 0; d < m->dim; ++d) out[d] += (s->inside[i] ? -1 : 1) * (position[d] - at[0][d]);
-  }
-  if (m->dim == 2) area[0] = at[1][1] - at[0][1], area[1] = at[0][0] - at[1][0];
-  for (PetscInt k = 1; k + 1 < n && m->dim == 3; ++k)
-    for (int d = 0; d < 3; ++d) {
-      const int i = (d + 1) % 3, j = (d + 2) % 3;
-      area[d] +=
-        0.5 * ((at[k][i] - at[0][i]) * (at[k + 1][j] - at[0][j]) - (at[k][j] - at[0][j]) * (at[k + 1][i] - at[0][i]));
-    }
-  for (PetscInt d = 0; d < m->dim; ++d) along += area[d] * out[d];
-  for (PetscInt d = 0; d < m->dim; ++d) sum->face[d] += along < 0 ? -area[d] : area[d];
 }
 
 /* Halves a simplex at its longest edge. */
@@ -286,7 +223,8 @@ static void measure(Measure *m, Simplex *s, PetscInt depth)
   if (ends) {
     add(m, s->xi, 1, m->whole + q);
     if (n_inside) add_inside(m, s, n_inside, m->fine + q);
-    if (mixed && m->faces) add_face(m, s, m->fine + q);
+    if (mixed && m->faces) measure_face(m, s, m->fine[q].face);
+    if (n_inside && m->faces) measure_sides(m, s, m->fine[q].side);
     return;
   }
   halve(m, s, half);
@@ -397,9 +335,11 @@ static void measure_all(const Seeding *s, CellType type, const PetscReal *x, con
 {
   const PetscInt dim = s->source->dim;
   PetscReal whole = 0;
-  Measure m = {.shape = &s->body->shape, .rule = rule, .type = type, .dim = dim, .x = x, .faces = s->faces};
+  Measure m = {.seeding = s, .rule = rule, .type = type, .dim = dim, .x = x, .faces = s->faces};
+  m.shape = &s->body->shape;
   m.slack = 1e-10 * PetscPowReal(cell_volume(type, x), 1 / (PetscReal)dim);
   look_whether_straight(&m);
+  measure_begin_sides(&m);
   if (is_simplex(type)) measure_simplex(&m);
   else measure_parts(&m);
   const PetscReal factor = growth(&m);
@@ -408,6 +348,7 @@ static void measure_all(const Seeding *s, CellType type, const PetscReal *x, con
     const Sum *sum = m.fine + q;
     part[q] = (SeedPart){.share = (is_whole(&m, q) ? 1 : factor) * sum->volume / whole, .whole = is_whole(&m, q)};
     for (PetscInt d = 0; d < dim; ++d) part[q].face[d] = sum->face[d];
+    for (PetscInt k = 0; k < CELL_MOST_SIDES; ++k) part[q].side[k] = sum->side[k];
     for (PetscInt d = 0; d < dim && part[q].share >= SEED_NOTHING; ++d) {
       part[q].xi[d] = sum->moment[d] / sum->volume;
       part[q].spread[d] = PetscMax(0, sum->second[d] / sum->volume - PetscSqr(part[q].xi[d]));

@@ -116,12 +116,12 @@ static PetscReal end_near(const Seeding *s, const PetscReal *position, PetscInt 
   PetscReal at[3] = {0}, low = (1 - ABOUT) * away, high = (1 + ABOUT) * away;
   for (PetscInt i = 0; i < dim; ++i) at[i] = position[i];
   at[d] = position[d] + low;
-  if (!shape_contains(&s->body->shape, dim, at, 0)) return 0;
+  if (!seed_is_inside(s, at)) return 0;
   at[d] = position[d] + high;
-  if (shape_contains(&s->body->shape, dim, at, 0)) return 0;
+  if (seed_is_inside(s, at)) return 0;
   for (int k = 0; k < HALVINGS; ++k) {
     at[d] = position[d] + 0.5 * (low + high);
-    if (shape_contains(&s->body->shape, dim, at, 0)) low = 0.5 * (low + high);
+    if (seed_is_inside(s, at)) low = 0.5 * (low + high);
     else high = 0.5 * (low + high);
   }
   return 0.5 * (low + high);
@@ -143,28 +143,39 @@ static PetscReal straight_end(const Seeding *s, const PetscReal *position, Petsc
   return end;
 }
 
+/* Is a place along axis d, `away` from one in a rectangle or brick, beyond a side that is not the body's surface? What
+ * the body has there is of other points. */
+static PetscBool is_beyond(CellType type, const PetscReal *x, const PetscReal *position, PetscInt d, PetscReal away,
+                           const unsigned char *outer)
+{
+  const PetscInt dim = cells[type].dim, side = seed_side_of(type, d, away > 0);
+  const PetscReal end = x[cells[type].face[side][0] * dim + d] - position[d];
+  return (PetscBool)(!outer[side] && PetscAbsReal(away) > (1 + SEED_NOTHING) * PetscAbsReal(end));
+}
+
 void seed_corner_of_part(const Seeding *s, CellType type, const PetscReal *x, const SeedPart *part,
-                         const PetscReal *position, PetscReal reach, PetscReal *corner)
+                         const PetscReal *position, PetscReal reach, const unsigned char *outer, PetscReal *corner)
 {
   const PetscInt dim = s->source->dim;
   PetscReal half[3], square = 0;
   if (!seed_half_sides(type, x, half)) return;
   for (PetscInt d = 0; d < dim; ++d) half[d] *= PetscSqrtReal(3 * part->spread[d]); /* of what fills its part evenly */
   for (PetscInt d = 0; d < dim; ++d) {
-    const PetscReal low = straight_end(s, position, d, -half[d], half),
-                    high = straight_end(s, position, d, half[d], half);
+    PetscReal low = straight_end(s, position, d, -half[d], half), high = straight_end(s, position, d, half[d], half);
+    if (low != 0 && is_beyond(type, x, position, d, low, outer)) low = 0;
+    if (high != 0 && is_beyond(type, x, position, d, high, outer)) high = 0;
     corner[d] = low != 0 && high != 0 ? 0 : low + high;
     square += PetscSqr(corner[d]);
   }
   for (PetscInt d = 0; d < dim && square <= PetscSqr((1 + WITHIN) * reach); ++d) corner[d] = 0;
 }
 
-/* Does the body reach side `side` beside a place xi of the cell? */
-static PetscBool reaches(const Seeding *s, CellType type, const PetscReal *x, PetscInt side, const PetscReal *xi)
+void seed_place_at_side(CellType type, const PetscReal *x, PetscInt side, const PetscReal *xi, PetscReal beyond,
+                        PetscReal *position)
 {
   const Cell *cell = cells + type;
   const PetscInt dim = cell->dim;
-  PetscReal normal[3], reference[CELL_MAX_NODES * 3] = {0}, at[3], position[3], square = 0, along = 0;
+  PetscReal normal[3], reference[CELL_MAX_NODES * 3] = {0}, at[3], square = 0, along = 0;
   for (PetscInt i = 0; i < cell->nodes; ++i)
     for (PetscInt d = 0; d < dim; ++d) reference[i * dim + d] = cell->reference[i][d];
   cell_side_area(type, side, reference, normal);
@@ -172,9 +183,8 @@ static PetscBool reaches(const Seeding *s, CellType type, const PetscReal *x, Pe
     square += normal[d] * normal[d];
     along += normal[d] * (reference[cell->face[side][0] * dim + d] - xi[d]);
   }
-  for (PetscInt d = 0; d < dim; ++d) at[d] = xi[d] + (1 - WITHIN) * along / square * normal[d];
+  for (PetscInt d = 0; d < dim; ++d) at[d] = xi[d] + (along / square + beyond / PetscSqrtReal(square)) * normal[d];
   cell_position(type, x, at, position);
-  return shape_contains(&s->body->shape, dim, position, 0);
 }
 
 void seed_face(const Seeding *s, PetscInt cell, const PetscReal *x, PetscInt q, const SeedPart *part,
@@ -186,11 +196,10 @@ void seed_face(const Seeding *s, PetscInt cell, const PetscReal *x, PetscInt q, 
   for (PetscInt side = 0; side < cells[type].faces; ++side) {
     PetscReal area[3];
     PetscInt beside = 0;
-    if (!outer[side] || !is_next_to(cells + type, side, rule, q)) continue;
-    if (part && !reaches(s, type, x, side, part->xi)) continue;
+    if (!outer[side] || (!part && !is_next_to(cells + type, side, rule, q))) continue;
     for (PetscInt p = 0; p < rule->n; ++p) beside += is_next_to(cells + type, side, rule, p) ? 1 : 0;
     cell_side_area(type, side, x, area);
-    const PetscReal share = (part ? PetscMin(1, part->share * (PetscReal)rule->n) : 1) / (PetscReal)beside;
+    const PetscReal share = part ? part->side[side] : 1 / (PetscReal)beside;
     for (PetscInt d = 0; d < cells[type].dim; ++d) face[d] += share * area[d];
   }
 }

@@ -2,7 +2,8 @@
 #include "points/fields.h"
 #include "points/seed/seed.h"
 
-#define AHEAD 0.1  /* of the side of a point's part: so far a surface is looked for in front of it */
+#define AHEAD 0.1 /* of the side of a point's part: so far a surface is looked for in front of it */
+#define HALVINGS 40
 #define FLUSH 1e-6 /* of the side of a point's part: the surface is there */
 
 void seed_path(PetscInt body, const char *key, size_t size, char *path)
@@ -231,6 +232,50 @@ static PetscBool shares_equally(const Seeding *s, CellType type)
   return s->equal && (!s->c->kinematics->hoop || type == CELL_TRIANGLE);
 }
 
+/* From a place in the body to where it ends along a unit vector, and bodies that it sticks to do; `most` at most. */
+static PetscReal way_out(const Seeding *s, const PetscReal *position, const PetscReal *along, PetscReal most)
+{
+  PetscReal low = 0, high = most, at[3] = {0};
+  for (int k = 0; k <= HALVINGS; ++k) {
+    const PetscReal middle = k ? 0.5 * (low + high) : most;
+    for (PetscInt d = 0; d < s->source->dim; ++d) at[d] = position[d] + middle * along[d];
+    if (seed_is_inside(s, at)) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+
+/* Is what is nearest of the shape's surface, at this depth, where the body sticks to another one? */
+static PetscBool is_nearest_to_seam(const Seeding *s, const PetscReal *position, PetscReal depth, PetscReal side)
+{
+  const PetscInt dim = s->source->dim;
+  PetscReal out[3] = {0}, at[3] = {0}, square = 0;
+  if (!s->n_mates || depth >= side) return PETSC_FALSE;
+  for (PetscInt d = 0; d < dim; ++d) at[d] = position[d];
+  for (PetscInt d = 0; d < dim; ++d) {
+    at[d] = position[d] + 0.5 * depth;
+    out[d] = depth - shape_depth(&s->body->shape, dim, at, side);
+    at[d] = position[d];
+    square += out[d] * out[d];
+  }
+  for (PetscInt d = 0; d < dim && square > 0; ++d)
+    at[d] += (depth + SEED_BEYOND * side) * out[d] / PetscSqrtReal(square);
+  return (PetscBool)(square > 0 && seed_is_held(s, at));
+}
+
+/* How deep a place is below the surface, as far as that is no seam; face: the surface that its part was given. */
+static PetscReal depth_below(const Seeding *s, const PetscReal *face, const PetscReal *position, PetscReal side)
+{
+  const PetscInt dim = s->source->dim;
+  const PetscReal depth = shape_depth(&s->body->shape, dim, position, side);
+  PetscReal along[3], square = 0;
+  for (PetscInt d = 0; d < dim; ++d) square += face[d] * face[d];
+  if (!is_nearest_to_seam(s, position, depth, side)) return depth;
+  if (square == 0) return side;
+  for (PetscInt d = 0; d < dim; ++d) along[d] = face[d] / PetscSqrtReal(square);
+  return way_out(s, position, along, side);
+}
+
 /* Where the surface cuts a cell: what the shape says of it. Beyond what a whole part has (usual) only who was given the
  * surface that is so near knows it, which comes nearer towards that, or whose whole part, a square or cube, ends there:
  * nobody else stands before it. side: of a whole part. */
@@ -238,25 +283,25 @@ static PetscReal depth_of(const Seeding *s, const SeedPart *part, const PetscRea
                           PetscReal side)
 {
   const PetscInt dim = s->source->dim;
-  const PetscReal depth = shape_depth(&s->body->shape, dim, position, side);
+  const PetscReal depth = depth_below(s, part->face, position, side);
   PetscReal square = 0, ahead[3];
   for (PetscInt d = 0; d < dim; ++d) square += part->face[d] * part->face[d];
   if (part->whole && PetscAbsReal(depth - side / 2) < FLUSH * side) return depth;
   if (depth <= usual || square == 0) return PetscMin(depth, usual);
   for (PetscInt d = 0; d < dim; ++d) ahead[d] = position[d] + AHEAD * side * part->face[d] / PetscSqrtReal(square);
-  const PetscReal nearer = depth - shape_depth(&s->body->shape, dim, ahead, side);
+  const PetscReal nearer = depth - depth_below(s, part->face, ahead, side);
   return nearer > 0.5 * AHEAD * side ? depth : usual;
 }
 
 /* Distance from the body's surface. */
 static PetscReal reach_of(const Seeding *s, PetscInt k, const PetscReal *x, PetscInt q, const PetscReal *position,
-                          PetscReal section, PetscReal whole)
+                          PetscReal section, PetscReal whole, const unsigned char *outer)
 {
   static const unsigned char inside[CELL_MOST_SIDES] = {0};
   const CellType type = grid_cell_type(s->source, s->cells[k]);
   const SeedRule *rule = seed_rule(s, s->cells[k]);
   PetscReal at[3];
-  if (!s->cut || s->cut[k] < 0) return seed_reach(type, x, position, section, rule, q, s->outer + k * CELL_MOST_SIDES);
+  if (!s->cut || s->cut[k] < 0) return seed_reach(type, x, position, section, rule, q, outer);
   cell_position(type, x, rule->xi + q * s->source->dim, at);
   return depth_of(s, s->part + s->cut[k] + q, position, seed_reach(type, x, at, whole, rule, q, inside),
                   PetscPowReal(whole, 1 / (PetscReal)s->source->dim));
@@ -270,6 +315,7 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt k, co
   const PetscInt dim = points->dim, cell = s->cells[k];
   const SeedRule *rule = seed_rule(s, cell);
   const PetscReal *xi = part ? part->xi : rule->xi + q * dim;
+  unsigned char outer[CELL_MOST_SIDES];
   PetscInt p;
   PetscFunctionBeginUser;
   PetscCall(PointsAppend(points, &p));
@@ -284,15 +330,15 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt k, co
   if (s->domains)
     seed_domain(grid_cell_type(s->source, cell), x, xi, rule->side, part && !part->whole ? part->spread : NULL, section,
                 point_real(points, POINT_DOMAIN, p));
-  if (s->outer) *point_real(points, POINT_REACH, p) = reach_of(s, k, x, q, position, section, whole);
+  if (s->outer) seed_sides_at(s, k, x, xi, outer);
+  if (s->outer) *point_real(points, POINT_REACH, p) = reach_of(s, k, x, q, position, section, whole, outer);
   if (points->components[POINT_CORNER] && part && s->outer)
     seed_corner_of_part(s, grid_cell_type(s->source, cell), x, part, position, *point_real(points, POINT_REACH, p),
-                        point_real(points, POINT_CORNER, p));
+                        outer, point_real(points, POINT_CORNER, p));
   if (points->components[POINT_CORNER] && !part)
-    seed_corner(grid_cell_type(s->source, cell), x, position, rule, q, s->outer + k * CELL_MOST_SIDES,
-                point_real(points, POINT_CORNER, p));
+    seed_corner(grid_cell_type(s->source, cell), x, position, rule, q, outer, point_real(points, POINT_CORNER, p));
   if (s->faces && (part || s->source != s->grid || !s->equal))
-    seed_face(s, cell, x, q, part, s->outer + k * CELL_MOST_SIDES, point_real(points, POINT_FACE, p));
+    seed_face(s, cell, x, q, part, outer, point_real(points, POINT_FACE, p));
   if (points->components[POINT_SLOPE]) seed_slope(s->body, dim, point_real(points, POINT_SLOPE, p));
   if (seed->n_state) PetscCall(PetscArraycpy(point_real(points, POINT_STATE, p), seed->initial, seed->n_state));
   points->id[p] = s->first_id + (PetscInt64)s->source->global_cell[cell] * s->rule.n + q;
@@ -352,10 +398,9 @@ static PetscErrorCode AdvanceIds(const Seeding *s, PetscInt64 *next)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SeedSource(Seeding *s, Points *points, PetscInt *taken, const PointSeed *per_material,
-                                 PetscInt64 *next)
+/* The cells of the body, and what they hold of it. *found is false after a mistake. */
+static PetscErrorCode ChooseSource(Seeding *s, PetscInt *taken, PetscInt64 *next)
 {
-  PetscBool found;
   PetscFunctionBeginUser;
   if (fills_shape(s) && !s->equal) {
     char path[128];
@@ -365,43 +410,55 @@ static PetscErrorCode SeedSource(Seeding *s, Points *points, PetscInt *taken, co
     PetscFunctionReturn(0);
   }
   if (!choose_rule(s)) PetscFunctionReturn(0);
-  PetscCall(ChooseCells(s, &found));
-  if (!found) PetscFunctionReturn(0);
+  PetscCall(SeedFindMates(s));
+  PetscCall(ChooseCells(s, &s->ready));
+  if (!s->ready) PetscFunctionReturn(0);
   PetscCall(SeedCheckVolume(s));
-  PetscCall(SeedCheckRoom(s, points, &found));
-  if (!found) PetscFunctionReturn(0);
   if (s->source == s->grid) PetscCall(SeedClaimCells(s, taken));
-  if (points->components[POINT_REACH]) {
-    PetscCall(PetscMalloc1(s->n_cells * CELL_MOST_SIDES, &s->outer));
-    PetscCall(OutlineSidesOfAll(s->source, s->n_cells, s->cells, s->outer));
-  }
-  PetscCall(SeedCells(s, points, per_material + s->material));
-  if (s->outline)
-    PetscCall(OutlineAdd(s->outline, s->source, s->n_cells, s->cells, s->b, per_material[s->material].density));
-  if (s->outline && fills_shape(s)) PetscCall(OutlineShape(s->outline, s->c->n_bodies, s->b, &s->body->shape));
   PetscCall(AdvanceIds(s, next));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode SeedBody(Seeding *s, Points *points, PetscInt *taken, const PointSeed *per_material,
-                               PetscInt64 *next)
+static PetscErrorCode ChooseBody(Seeding *s, PetscInt *taken, PetscInt64 *next)
 {
   Grid *own = NULL;
   PetscFunctionBeginUser;
   s->source = s->grid;
+  s->first_id = *next;
   PetscCall(FindMaterial(s));
   if (s->material < 0) PetscFunctionReturn(0);
   if (s->body->mesh) {
     PetscCall(CreateOwnMesh(s, &own));
     if (!own) PetscFunctionReturn(0);
-    s->source = own;
+    s->source = s->own = own;
   }
-  PetscCall(SeedSource(s, points, taken, per_material, next));
+  PetscCall(ChooseSource(s, taken, next));
+  PetscFunctionReturn(0);
+}
+
+/* The points of a body whose cells are known. */
+static PetscErrorCode SeedBody(Seeding *s, Points *points, const PointSeed *per_material)
+{
+  PetscBool fits;
+  PetscFunctionBeginUser;
+  PetscCall(SeedCheckRoom(s, points, &fits));
+  if (!fits) PetscFunctionReturn(0);
+  PetscCall(SeedCells(s, points, per_material + s->material));
+  if (s->outline)
+    PetscCall(OutlineAdd(s->outline, s->source, s->n_cells, s->cells, s->b, per_material[s->material].density));
+  if (s->outline && fills_shape(s)) PetscCall(OutlineShape(s->outline, s->c->n_bodies, s->b, &s->body->shape));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SeedingClear(Seeding *s)
+{
+  PetscFunctionBeginUser;
   PetscCall(PetscFree(s->cells));
   PetscCall(PetscFree(s->cut));
   PetscCall(PetscFree(s->part));
   PetscCall(PetscFree(s->outer));
-  PetscCall(GridDestroy(&own));
+  PetscCall(PetscFree(s->mate));
+  PetscCall(GridDestroy(&s->own));
   PetscFunctionReturn(0);
 }
 
@@ -417,30 +474,40 @@ static PetscErrorCode LocateSeeds(Points *points, const Grid *grid, const Case *
   PetscFunctionReturn(0);
 }
 
+static Seeding seeding_of(const Points *points, const Grid *grid, const Case *c, PetscInt b)
+{
+  return (Seeding){.c = c,
+                   .grid = grid,
+                   .b = b,
+                   .field = grid->n_fields > 1 ? case_field(c, b) : 0,
+                   .body = c->bodies + b,
+                   .domains = points->components[POINT_DOMAIN] > 0,
+                   .faces = points->components[POINT_FACE] > 0};
+}
+
 PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,
                                   PetscBool equal, Outline *outline, Diag *diag)
 {
   PetscInt *taken;
   PetscInt64 next = 0;
   PetscBool own_mesh = PETSC_FALSE;
+  Seeding *all;
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(grid->n_cells, &taken));
+  PetscCall(PetscMalloc1(c->n_bodies, &all));
   for (PetscInt k = 0; k < grid->n_cells; ++k) taken[k] = -1;
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
-    Seeding s = {.c = c,
-                 .grid = grid,
-                 .diag = diag,
-                 .b = b,
-                 .field = grid->n_fields > 1 ? case_field(c, b) : 0,
-                 .body = c->bodies + b,
-                 .first_id = next,
-                 .domains = points->components[POINT_DOMAIN] > 0,
-                 .faces = points->components[POINT_FACE] > 0,
-                 .equal = equal,
-                 .outline = outline};
-    if (!s.body->absent) PetscCall(SeedBody(&s, points, taken, per_material, &next));
-    if (s.body->mesh) own_mesh = PETSC_TRUE;
+    all[b] = seeding_of(points, grid, c, b);
+    all[b].diag = diag, all[b].equal = equal, all[b].outline = outline;
+    if (!all[b].body->absent) PetscCall(ChooseBody(&all[b], taken, &next));
+    if (all[b].body->mesh) own_mesh = PETSC_TRUE;
   }
+  if (points->components[POINT_REACH]) PetscCall(SeedFindSides(all, c->n_bodies));
+  for (PetscInt b = 0; b < c->n_bodies; ++b) {
+    if (all[b].ready) PetscCall(SeedBody(&all[b], points, per_material));
+    PetscCall(SeedingClear(&all[b]));
+  }
+  PetscCall(PetscFree(all));
   PetscCall(PetscFree(taken));
   if (own_mesh) PetscCall(LocateSeeds(points, grid, c, diag));
   PetscCall(PointsSort(points));

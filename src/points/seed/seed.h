@@ -4,6 +4,7 @@
 
 #define SEED_MAX_RULE 64
 #define SEED_NOTHING 1e-6 /* of a cell */
+#define SEED_BEYOND 4e-3  /* of half a cell: so far beyond a surface another body is looked for */
 
 /* Where points stand in a cell. */
 typedef struct {
@@ -16,25 +17,32 @@ typedef struct {
  * middle of that is. */
 typedef struct {
   PetscReal share, xi[3], spread[3]; /* spread: mean square of xi about that */
-  PetscReal face[3];                 /* the body's surface in it, where that is asked for, as a vector outwards, m2 */
+  PetscReal face[3];                 /* the body's surface in it, where that is asked for, as a vector outwards, m2, */
+  PetscReal side[CELL_MOST_SIDES];   /* and along the sides of the cell, should these be surface: which share of each */
   PetscBool whole;                   /* all of the part does */
 } SeedPart;
 
 typedef enum { SEED_NONE, SEED_CUT, SEED_WHOLE } SeedFill;
+/* Shared: another body that this one sticks to has some of the cell beyond; its shape tells where. */
+typedef enum { SIDE_INNER, SIDE_OUTER, SIDE_SHARED } SeedSide;
 
-typedef struct {
+typedef struct Seeding {
   const Case *c;
   const Grid *grid; /* where the points live */
+  PetscBool ready;  /* are its cells known? */
   Diag *diag;
   PetscInt b, field; /* the body, and its velocity field */
   const BodySpec *body;
   PetscInt material;
-  const Grid *source;       /* whose cells give the points: the grid, or the body's own mesh */
+  const Grid *source;       /* whose cells give the points: the grid, or the body's own mesh, */
+  Grid *own;                /* if it has one */
   PetscInt n_cells, *cells; /* local cells of the source that belong to the body */
   PetscInt *cut;            /* n_cells: of one that the body's surface cuts, where its parts begin; else -1 */
   PetscInt n_parts, capacity;
-  SeedPart *part;            /* n_parts */
-  unsigned char *outer;      /* n_cells x CELL_MOST_SIDES: is it the body's surface? NULL: nobody asks */
+  SeedPart *part;       /* n_parts */
+  unsigned char *outer; /* n_cells x CELL_MOST_SIDES: is it the body's surface? A SeedSide; NULL: nobody asks */
+  PetscInt n_mates;     /* shapes of bodies that this one sticks to where they touch: those that fill theirs */
+  const Shape **mate;
   SeedRule rule, first_rule; /* for cells of the source's type, and of its first_type */
   PetscBool domains;         /* do the points have some? */
   PetscBool faces;           /* are they to know the part of the body's surface that they stand for? */
@@ -53,6 +61,25 @@ SeedFill seed_fill(const Seeding *s, PetscInt cell);
 /* Parts of a cell, one for each point of the rule; those without a share have no point. Once
  * measured, the cell may turn out to be whole, or empty. */
 SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedPart *part);
+
+/* --- seams.c: bodies that stick to each other, sharing nodes, have no surface where they touch --- */
+/* Finds the shapes of those that it sticks to. */
+PetscErrorCode SeedFindMates(Seeding *s);
+/* Does one of these hold this position? */
+PetscBool seed_is_held(const Seeding *s, const PetscReal *position);
+/* Does the body, or one of these? */
+PetscBool seed_is_inside(const Seeding *s, const PetscReal *position);
+/* Which share of a side of a brick in the reference cell, at its high or low end along axis d, none of these is
+ * beyond. */
+PetscReal seed_bare(const Seeding *s, CellType type, const PetscReal *x, const PetscReal *low, const PetscReal *high,
+                    PetscInt d, PetscBool at_high);
+/* Collective. The sides of the cells of all n bodies that are ready which are their surface. */
+PetscErrorCode SeedFindSides(Seeding *all, PetscInt n);
+/* Those of the k-th cell, with nodes at x, as its point at xi sees them: inner or outer. */
+void seed_sides_at(const Seeding *s, PetscInt k, const PetscReal *x, const PetscReal *xi, unsigned char *outer);
+/* reach.c. The place straight before xi at this side of the cell, `beyond` of the way farther. */
+void seed_place_at_side(CellType type, const PetscReal *x, PetscInt side, const PetscReal *xi, PetscReal beyond,
+                        PetscReal *position);
 
 /* slivers.c. Points that are next to nothing go to those beside them, or, where a cell has no others, are one: whatever
  * comes first, so that a body and its image in a mirror have the same points. */
@@ -76,6 +103,8 @@ PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *positio
 
 /* Half of the sides of a cell along the axes; PETSC_FALSE: it is no rectangle or brick along them. */
 PetscBool seed_half_sides(CellType type, const PetscReal *x, PetscReal *half);
+/* bricks.c. The side of a quadrilateral or hexahedron that looks along its axis d or against it. */
+PetscInt seed_side_of(CellType type, PetscInt d, PetscBool at_high);
 /* bricks.c. Is there anything of a body's box in a cell, but for `within` of its sides? PETSC_FALSE: they are no
  * bricks. */
 PetscBool seed_box_fill(const Seeding *s, CellType type, const PetscReal *x, PetscReal within, SeedFill *fill);
@@ -84,14 +113,14 @@ PetscBool seed_box_parts(const Seeding *s, CellType type, const PetscReal *x, co
 /* Of a part of a rectangle or brick that the surface cuts: to the sides of the body that are its ends along the axes,
  * or to the corner or edge between them; 0 where none is farther than the nearest surface. */
 void seed_corner_of_part(const Seeding *s, CellType type, const PetscReal *x, const SeedPart *part,
-                         const PetscReal *position, PetscReal reach, PetscReal *corner);
+                         const PetscReal *position, PetscReal reach, const unsigned char *outer, PetscReal *corner);
 /* From the same point to these sides, or to the corner or edge where several of them meet at right angles; of others to
  * the nearest; 0 inside. */
 void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, const SeedRule *rule, PetscInt q,
                  const unsigned char *outer, PetscReal *corner);
 
-/* The surface of the q-th point of the cell's rule, with nodes at x: that of its part (NULL: it has all of it), and the
- * sides that are `outer` and that it lies along, as far as they belong to the body. */
+/* The surface of the q-th point of the cell's rule, with nodes at x: that of its part, and what of the sides that are
+ * `outer` is that; of one that has all of its part (NULL) the sides that it lies along. */
 void seed_face(const Seeding *s, PetscInt cell, const PetscReal *x, PetscInt q, const SeedPart *part,
                const unsigned char *outer, PetscReal *face);
 

@@ -37,6 +37,7 @@ static void give(const SeedPart *from, PetscReal share, PetscInt dim, SeedPart *
     to->face[d] += share * from->face[d];
     to->xi[d] = (to->share * to->xi[d] + volume * from->xi[d]) / sum;
   }
+  for (PetscInt k = 0; k < CELL_MOST_SIDES; ++k) to->side[k] += share * from->side[k];
   to->share = sum;
   to->whole = PETSC_FALSE;
 }
@@ -74,6 +75,8 @@ void seed_hand_on_faces(SeedPart *part, const SeedRule *rule, PetscInt dim)
           (to < 0 || square_of_rule(rule, dim, p, q) < square_of_rule(rule, dim, to, q) - SEED_NOTHING))
         to = p;
     for (PetscInt d = 0; d < dim && to >= 0; ++d) part[to].face[d] += part[q].face[d];
+    for (PetscInt k = 0; k < CELL_MOST_SIDES && to >= 0; ++k) part[to].side[k] += part[q].side[k];
     for (PetscInt d = 0; d < dim; ++d) part[q].face[d] = 0;
+    for (PetscInt k = 0; k < CELL_MOST_SIDES; ++k) part[q].side[k] = 0;
   }
 }

@@ -129,6 +129,7 @@ void contact_take_section(const Contact *s, const NodalScene *scene, PetscReal s
 {
   const PetscBool wall = c->wall < s->n_walls;
   const PetscReal divisor = divisor_of(s, scene, c);
+  c->inner = !contact_is_surface(scene, c->owner, c->facing);
   const PetscReal adhesion =
     wall ? scene->c->walls[c->wall].adhesion : scene->c->interfaces[c->wall - s->n_walls].adhesion;
   c->section = c->cover * section;

@@ -2,6 +2,7 @@
 #include "solve/contact/contact.h"
 
 #define LEAST 0.25 /* of the side of a square of the point's volume: what stands before a wall is no smaller */
+#define ASIDE 1e-3 /* cosine: a surface that looks elsewhere */
 #define TORN 0.5   /* change of an edge's length, or of an angle, beyond which nobody knows where a surface looks */
 
 /* Of n points of a cell the share next to one of its sides: a row of a lattice, or of the triangular
@@ -72,6 +73,26 @@ static PetscBool knows_its_face(const Points *points, PetscInt p)
   for (PetscInt d = 0; d < points->components[POINT_FACE]; ++d)
     given += PetscAbsReal(point_real(points, POINT_FACE, p)[d]);
   return (PetscBool)(given > 0);
+}
+
+/* Does it stand beside the surface that looks at n? Of cells whose sides are at right angles the corner tells. */
+static PetscBool stands_before(const NodalScene *scene, PetscInt p, const PetscReal n[3])
+{
+  const Points *points = scene->points;
+  const PetscReal *corner = point_real(points, POINT_CORNER, p);
+  PetscReal F[9], N[3], ahead = 0, square = 0;
+  point_F(points, p, F);
+  pull_back(F, n, N);
+  for (PetscInt d = 0; d < points->dim; ++d) ahead -= corner[d] * N[d], square += PetscSqr(corner[d]);
+  if (square == 0) return PETSC_FALSE;
+  const Cell *cell = scene->grid->cloud || points->cell[p] < 0 ? NULL : grid_cell(scene->grid, points->cell[p]);
+  if (!cell || cell->nodes != 1 << points->dim) return PETSC_TRUE;
+  return (PetscBool)(ahead > ASIDE * PetscSqrtReal(square));
+}
+
+PetscBool contact_is_surface(const NodalScene *scene, PetscInt p, const PetscReal n[3])
+{
+  return (PetscBool)(is_torn(scene, p) || contact_face(scene->points, p, n) > 0 || stands_before(scene, p, n));
 }
 
 /* A piece of matter in the section (in space: of it), of the volume of the point, and by how much more a surface of it
