@@ -204,4 +204,25 @@ for tilt in 0:0 1.7e-5:0 1e-4:3e-5 1.4e-3:1e-3 1.7e-2:5e-3; do
   done
 done
 
+# --- sides of a container meet at its corners: what is largest on the floor is no mean of floor and sides ---
+cat >container.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 2}
+grid: {box: {min: [-1, -1], max: [1.5, 1.5]}, size: 0.125}
+bodies: [{name: b, shape: {polygon: [[0, 0], [CX, CY], [DX, DY], [EX, EY]]}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0.3}}
+walls: [{name: w, inside: true, shape: {polygon: [[0, 0], [CX, CY], [DX, DY], [EX, EY]]}}]
+loads: {gravity: [GX, GY]}
+measures: {peak: {contact: peak_pressure, of: {wall: w}}}
+END
+for turned in 0 45; do # a block of 0.5 x 0.75 m, whose weight presses it on one side of 0.5 m
+  awk -v t=$turned 'BEGIN { c = cos(t * 3.14159265358979 / 180); s = sin(t * 3.14159265358979 / 180)
+    printf "s/CX/%.9f/g; s/CY/%.9f/g; s/DX/%.9f/g; s/DY/%.9f/g; ", 0.5 * c, 0.5 * s, 0.5 * c - 0.75 * s, 0.5 * s + 0.75 * c
+    printf "s/EX/%.9f/g; s/EY/%.9f/g; s/GX/%.9f/; s/GY/%.9f/", -0.75 * s, 0.75 * c, 10 * s, -10 * c }' >turn.sed
+  sed -f turn.sed container.yaml >case.yaml
+  expect "a container turned by $turned" 0 "$talus" run case.yaml --out run --force --quiet
+  near peak "$(last 3)" 7500 0.01
+done
+
 finish

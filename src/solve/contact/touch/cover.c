@@ -19,7 +19,7 @@ static PetscErrorCode Bearing(const Contact *s, const Grid *grid, PetscReal *nod
   PetscFunctionReturn(0);
 }
 
-/* Where a body ends a hair beyond a line of the grid those behind the line are as near, and have none of the surface. */
+/* Where a body ends a hair beyond a line of the grid those behind that are as near, and have none of the surface. */
 static PetscBool is_near(const Contact *s, const ContactPoint *c, PetscReal gap)
 {
   return (PetscBool)(c->state == CONTACT_OPEN && !c->inner && gap <= HAIR * s->length);
