@@ -21,13 +21,13 @@
 /* share of the residual that an iteration leaves whose tangent is good for one more (docs/theory.md, section 70) */
 #define KEPT 1e-2
 
-/* Newton's method at its best leaves (last / before)^2 of the residual: a tenth of that, and no more than what its
+/* Newton's method at its best leaves (last / before)^2 of the residual: a share of that, and no more than what its
  * tolerance would not see. */
-static PetscReal forcing_term(const Newton *n, PetscReal tightest, PetscReal loosest)
+static PetscReal forcing_term(const Newton *n, PetscReal share, PetscReal tightest, PetscReal loosest)
 {
   if (n->before <= 0) return loosest;
   const PetscReal falls = PetscSqr(n->last / n->before), unseen = UNSEEN * newton_tolerance(n) / n->last;
-  return PetscMax(tightest, PetscMin(loosest, PetscMax(0.1 * falls, unseen)));
+  return PetscMax(tightest, PetscMin(loosest, PetscMax(share * falls, unseen)));
 }
 
 /* A wall or a load that is one more unknown takes both of its solves as exact. */
@@ -37,8 +37,13 @@ static PetscBool is_bordered(const Newton *n)
   return p->border || (p->scene.contact && p->scene.contact->n_rigid > 0);
 }
 
-/* The loosest of cheap ones. */
-static PetscReal loosest_cheap(const Newton *n) { return n->problem->scene.contact ? LOOSEST_TOUCHING : LOOSEST_CHEAP; }
+/* The loosest of cheap ones. Tangents of what is elastic foretell much; and where what is stiff opens and closes steps
+ * are near to fail as it is. */
+static PetscReal loosest_cheap(const Newton *n)
+{
+  if (n->problem->in.symmetric || n->problem->stiff) return TIGHTEST_CHEAP;
+  return n->problem->scene.contact ? LOOSEST_TOUCHING : LOOSEST_CHEAP;
+}
 
 /* In dynamics inertia rules the tangent, and with wide functions making one takes longer than several iterations. What
  * is eliminated reads tangents. */
@@ -84,8 +89,8 @@ PetscErrorCode NewtonForcing(Newton *n)
   PetscCall(SNESGetKSP(n->snes, &ksp));
   if (n->keeps) PetscCall(KeepPreconditioner(n, ksp));
   if (n->asked_tolerance) PetscFunctionReturn(0);
-  if (n->learns) n->forcing = is_bordered(n) ? TIGHTEST : forcing_term(n, TIGHTEST, LOOSEST);
-  else n->forcing = is_bordered(n) ? TIGHTEST_CHEAP : forcing_term(n, TIGHTEST_CHEAP, loosest_cheap(n));
+  if (n->learns) n->forcing = is_bordered(n) ? TIGHTEST : forcing_term(n, 0.1, TIGHTEST, LOOSEST);
+  else n->forcing = is_bordered(n) ? TIGHTEST_CHEAP : forcing_term(n, 0.01, TIGHTEST_CHEAP, loosest_cheap(n));
   PetscCall(KSPSetTolerances(ksp, n->forcing, PETSC_DEFAULT, PETSC_DEFAULT, PETSC_DEFAULT));
   PetscFunctionReturn(0);
 }
