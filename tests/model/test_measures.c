@@ -319,9 +319,10 @@ static void test_plastic_balance(void **state)
                 m->method->name, (double)e.start, (double)e.kinetic, (double)e.elastic, (double)e.dissipated,
                 (double)e.damped, (double)e.external, (double)e.transfer, (double)worst);
     CHECK(e.dissipated > 0.3 * e.start && e.damped > 0, "nothing yields");
-    CHECK(worst < (k ? 1e-6 : 0.01), "imbalance %g", (double)worst);
-    /* the lowest row of cells is stopped at its foot at once and keeps a third of its energy */
-    if (!k) CHECK_CLOSE(e.transfer, 2. / 3 * 0.125 * 9000, 1e-6 * e.start);
+    CHECK(worst < 1e-6, "imbalance %g", (double)worst);
+    /* the lowest row of cells is stopped at its foot at once and keeps a third of its energy; what damped it before is
+     * out of balance in the first step */
+    if (!k) CHECK_CLOSE(e.transfer, 2. / 3 * 0.125 * 9000, 1e-4 * e.start);
     CALL(ModelDestroy(&m));
   }
 }
