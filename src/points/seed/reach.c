@@ -6,6 +6,9 @@
 #define ABOUT 0.1   /* of half a part's side: what measures its sides is off by less */
 #define STRAIGHT 1e-3
 #define HALVINGS 30
+#define HALVINGS_OUT 40
+#define AHEAD 0.1  /* of the side of a point's part: so far a surface is looked for in front of it */
+#define FLUSH 1e-6 /* of the side of a point's part: the surface is there */
 #define ALONG 1e-6 /* cosine between normals of sides: these are not at right angles */
 
 /* From the line or plane of a side: through its first nodes. */
@@ -109,21 +112,32 @@ PetscBool seed_half_sides(CellType type, const PetscReal *x, PetscReal *half)
   return PETSC_TRUE;
 }
 
+/* Does the body, or one that it sticks to, have what is so far from a place along a unit vector? */
+static PetscBool has_at(const Seeding *s, const PetscReal *position, const PetscReal *along, PetscReal far)
+{
+  PetscReal at[3] = {0};
+  for (PetscInt d = 0; d < s->source->dim; ++d) at[d] = position[d] + far * along[d];
+  return seed_is_inside(s, at);
+}
+
+/* Where it ends, between low and high. */
+static void halve(const Seeding *s, const PetscReal *position, const PetscReal *along, int times, PetscReal *low,
+                  PetscReal *high)
+{
+  for (int k = 0; k < times; ++k) {
+    const PetscReal middle = 0.5 * (*low + *high);
+    if (has_at(s, position, along, middle)) *low = middle;
+    else *high = middle;
+  }
+}
+
 /* How far the body goes on from a place along axis d, if it ends at about `away`; 0: it does not end there. */
 static PetscReal end_near(const Seeding *s, const PetscReal *position, PetscInt d, PetscReal away)
 {
-  const PetscInt dim = s->source->dim;
-  PetscReal at[3] = {0}, low = (1 - ABOUT) * away, high = (1 + ABOUT) * away;
-  for (PetscInt i = 0; i < dim; ++i) at[i] = position[i];
-  at[d] = position[d] + low;
-  if (!seed_is_inside(s, at)) return 0;
-  at[d] = position[d] + high;
-  if (seed_is_inside(s, at)) return 0;
-  for (int k = 0; k < HALVINGS; ++k) {
-    at[d] = position[d] + 0.5 * (low + high);
-    if (seed_is_inside(s, at)) low = 0.5 * (low + high);
-    else high = 0.5 * (low + high);
-  }
+  PetscReal along[3] = {0}, low = (1 - ABOUT) * away, high = (1 + ABOUT) * away;
+  along[d] = 1;
+  if (!has_at(s, position, along, low) || has_at(s, position, along, high)) return 0;
+  halve(s, position, along, HALVINGS, &low, &high);
   return 0.5 * (low + high);
 }
 
@@ -202,4 +216,57 @@ void seed_face(const Seeding *s, PetscInt cell, const PetscReal *x, PetscInt q, 
     const PetscReal share = part ? part->side[side] : 1 / (PetscReal)beside;
     for (PetscInt d = 0; d < cells[type].dim; ++d) face[d] += share * area[d];
   }
+}
+
+/* From a place in the body to where it ends along a unit vector, and bodies that it sticks to do; `most` at most. */
+static PetscReal way_out(const Seeding *s, const PetscReal *position, const PetscReal *along, PetscReal most)
+{
+  PetscReal low = 0, high = most;
+  if (has_at(s, position, along, most)) return most;
+  halve(s, position, along, HALVINGS_OUT, &low, &high);
+  return low;
+}
+
+/* Is what is nearest of the shape's surface, at this depth, where the body sticks to another one? */
+static PetscBool is_nearest_to_seam(const Seeding *s, const PetscReal *position, PetscReal depth, PetscReal side)
+{
+  const PetscInt dim = s->source->dim;
+  PetscReal out[3] = {0}, at[3] = {0}, square = 0;
+  if (!s->n_mates || depth >= side) return PETSC_FALSE;
+  for (PetscInt d = 0; d < dim; ++d) at[d] = position[d];
+  for (PetscInt d = 0; d < dim; ++d) {
+    at[d] = position[d] + 0.5 * depth;
+    out[d] = depth - shape_depth(&s->body->shape, dim, at, side);
+    at[d] = position[d];
+    square += out[d] * out[d];
+  }
+  for (PetscInt d = 0; d < dim && square > 0; ++d)
+    at[d] += (depth + SEED_BEYOND * side) * out[d] / PetscSqrtReal(square);
+  return (PetscBool)(square > 0 && seed_is_held(s, at));
+}
+
+/* How deep a place is below the surface, as far as that is no seam; face: the surface that its part was given. */
+static PetscReal depth_below(const Seeding *s, const PetscReal *face, const PetscReal *position, PetscReal side)
+{
+  const PetscInt dim = s->source->dim;
+  const PetscReal depth = shape_depth(&s->body->shape, dim, position, side);
+  PetscReal along[3], square = 0;
+  for (PetscInt d = 0; d < dim; ++d) square += face[d] * face[d];
+  if (!is_nearest_to_seam(s, position, depth, side)) return depth;
+  if (square == 0) return side;
+  for (PetscInt d = 0; d < dim; ++d) along[d] = face[d] / PetscSqrtReal(square);
+  return way_out(s, position, along, side);
+}
+
+PetscReal seed_depth(const Seeding *s, const SeedPart *part, const PetscReal *position, PetscReal usual, PetscReal side)
+{
+  const PetscInt dim = s->source->dim;
+  const PetscReal depth = depth_below(s, part->face, position, side);
+  PetscReal square = 0, ahead[3];
+  for (PetscInt d = 0; d < dim; ++d) square += part->face[d] * part->face[d];
+  if (part->whole && PetscAbsReal(depth - side / 2) < FLUSH * side) return depth;
+  if (depth <= usual || square == 0) return PetscMin(depth, usual);
+  for (PetscInt d = 0; d < dim; ++d) ahead[d] = position[d] + AHEAD * side * part->face[d] / PetscSqrtReal(square);
+  const PetscReal nearer = depth - depth_below(s, part->face, ahead, side);
+  return nearer > 0.5 * AHEAD * side ? depth : usual;
 }

@@ -77,7 +77,7 @@ PetscReal seed_bare(const Seeding *s, CellType type, const PetscReal *x, const P
 PetscErrorCode SeedFindSides(Seeding *all, PetscInt n);
 /* Those of the k-th cell, with nodes at x, as its point at xi sees them: inner or outer. */
 void seed_sides_at(const Seeding *s, PetscInt k, const PetscReal *x, const PetscReal *xi, unsigned char *outer);
-/* depth.c. Where the surface cuts a cell, how deep a place is below it: what the shape says of it. Beyond what a whole
+/* reach.c. Where the surface cuts a cell, how deep a place is below it: what the shape says of it. Beyond what a whole
  * part has (usual) only who was given the surface that is so near knows it, which comes nearer towards that, or whose
  * whole part, a square or cube, ends there: nobody else stands before it. side: of a whole part. */
 PetscReal seed_depth(const Seeding *s, const SeedPart *part, const PetscReal *position, PetscReal usual,

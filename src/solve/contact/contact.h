@@ -178,7 +178,8 @@ PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n
 /* Of the surface of its body that material point p was given (POINT_FACE) what looks at a wall with the normal n now,
  * as large as it was at the start, m2 (in rings m); 0: none. */
 PetscReal contact_face(const Points *points, PetscInt p, const PetscReal n[3]);
-/* Does material point p stand at the surface of its body that looks at n, for all that it knows? What has flowed may. */
+/* Does material point p stand at the surface of its body that looks at n, for all that it knows? What has flowed
+ * may. */
 PetscBool contact_is_surface(const NodalScene *scene, PetscInt p, const PetscReal n[3]);
 /* Has the square of an edge's length, or the cosine of an angle, at point p changed by `limit` since the start? */
 PetscBool contact_is_strained(const Points *points, PetscInt p, PetscReal limit);
