@@ -1,7 +1,7 @@
 /* What a step starts out of balance: work of the forces of its start that no longer balance there what nodes remember
  * as acceleration, by the trapezoidal rule (docs/theory.md, "Energy"). Nodes of a grid that is restored know of no
  * step before: there it is what all other works leave over (energy.c). */
-#include "model/measure/mass_product.h"
+#include "model/measure/energy/mass_product.h"
 #include "model/model_private.h"
 
 static PetscBool is_twin(const Model *m, PetscInt node) { return m->method->clouds && cloud_is_twin(m->grid, node); }

@@ -5,7 +5,7 @@
  * the middle of the step, that of loads and reactions is theirs there. */
 #include "formulation/holding.h"
 #include "material/pressure.h"
-#include "model/measure/mass_product.h"
+#include "model/measure/energy/mass_product.h"
 #include "model/model_private.h"
 
 static PetscReal points_kinetic(const Model *m)

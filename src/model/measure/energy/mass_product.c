@@ -1,4 +1,4 @@
-#include "model/measure/mass_product.h"
+#include "model/measure/energy/mass_product.h"
 #include "base/math/rows.h"
 #include "model/model_private.h"
 
