@@ -56,7 +56,8 @@ typedef struct {
   const char *name, *help;
   /* the same whatever du is: gathered once in a step, and its norm scales the residual */
   PetscBool dead;
-  /* their work has an account of its own (model/contact/contact.c; dead: that of what holds, model/measure/energy/energy.c) */
+  /* their work has an account of its own (model/contact/contact.c; dead: that of what holds,
+   * model/measure/energy/energy.c) */
   PetscBool apart;
   /* Collective. *data stays NULL where the case asks for nothing of the kind; the user's mistakes
    * go to diag (NULL: sought before). */
