@@ -124,9 +124,10 @@ static PetscBool stages_seek(const YamlNode *stages)
 }
 
 /* What yields without a change of volume locks with displacements alone, and nothing fails: who asks
- * for a factor of safety or a limit load and names no formulation gets one that does not. With dilatancy Newton's
- * method loses its way in the mixed one long before anything fails (docs/decisions.md, 263), and explicit dynamics has
- * none. Stages have that of the whole. */
+ * for a factor of safety or a limit load and names no formulation gets one that does not. Where cells can share their
+ * change of volume that is nearer to what is known, and several times cheaper (docs/decisions.md, 349); with dilatancy
+ * Newton's method loses its way in the mixed one long before anything fails (263), and explicit dynamics has none.
+ * Stages have that of the whole. */
 static PetscErrorCode ResolveFormulation(const YamlNode *root, const Case *whole, Case *c)
 {
   const Method *method = c->method ? method_find(c->method) : NULL;
@@ -136,8 +137,7 @@ static PetscErrorCode ResolveFormulation(const YamlNode *root, const Case *whole
 
   PetscFunctionBeginUser;
   if (yaml_find(root, "formulation") || !seeks || !method || !method->takes_pressure) PetscFunctionReturn(0);
-  const PetscBool dilates = (PetscBool)(case_dilates(c) || runs_explicit);
-  const PetscBool shared = whole ? !strcmp(whole->formulation, "mean-dilatation") : dilates && cells_share(c);
+  const PetscBool shared = whole ? !strcmp(whole->formulation, "mean-dilatation") : cells_share(c);
   if (whole ? !case_is_mixed(whole) && !shared : !shared && runs_explicit) PetscFunctionReturn(0);
   PetscCall(PetscFree(c->formulation));
   PetscCall(PetscStrallocpy(shared ? "mean-dilatation" : "mixed", &c->formulation));

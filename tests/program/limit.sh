@@ -32,8 +32,13 @@ for ranks in 1 2 3; do
 done
 says out.txt "by load = it holds" "by energy = " "limit load = 188." "times 'press'"
 says run/limit.csv "control,load [],displacement [m],iterations,largest [m],stored [J],dissipated [J],work [J]"
-expect "mean dilatation, mpm" 0 "$talus" run block.yaml --out run --force --set formulation=mean-dilatation --set method=mpm
+says out.txt "formulation = mean-dilatation"
+expect "mean dilatation, mpm" 0 "$talus" run block.yaml --out run --force --set method=mpm
 near "$bears"
+for ranks in 1 2 3; do
+  expect "mixed on $ranks" 0 on_ranks $ranks "$talus" run block.yaml --out run --force --set formulation=mixed
+  near "$bears"
+done
 sed 's/^loads:.*//; s/^  - {on: {boundary: bottom}, fix: \[y\]}/&\n  - {name: plate, on: {boundary: top}, displacement: {y: -0.002}}/' block.yaml >plate.yaml
 expect "a displacement" 0 "$talus" run plate.yaml --out run --force --set analysis.limit='{raise: plate, step: 0.02, tolerance: 1e-3}'
 awk -F, 'END { exit !($3 > 188.3e3 && $3 < 188.6e3) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"

@@ -128,7 +128,7 @@ static void warn_of_locking(const Model *m, Diag *diag)
             !m->method->takes_pressure ? "mpm and fem take `formulation: mixed`, which does not lock"
             : case_dilates(m->c)
               ? "with a dilatancy angle `formulation: mean-dilatation` locks less, `points_per_cell: 1` least"
-              : "`formulation: mixed` does not lock; it is the default of factor-of-safety");
+              : "`formulation: mixed` does not lock, nor does `mean-dilatation` in quadrilaterals and hexahedra");
 }
 
 void strength_start(Model *m, Diag *diag)

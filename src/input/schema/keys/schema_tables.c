@@ -340,8 +340,8 @@ static const SchemaEntry case_entries[] = {
       AT(Case, method)),
   KEY("formulation", WORD_TEXT, NULL, "unknowns of the equations", .registry = (const void *const *)formulations,
       .fallback = "displacement",
-      .note = "displacement; where a factor of safety or a limit load is sought, in any of the stages, mixed, or "
-              "mean-dilatation (whole cells) with a dilatancy angle or beside explicit stages",
+      .note = "displacement; where a factor of safety or a limit load is sought, in any of the stages, mean-dilatation "
+              "in boxes of quadrilaterals and hexahedra, mixed elsewhere",
       AT(Case, formulation)),
   KEY("mixed", TABLE, NULL, "numbers of the mixed formulation", .table = &mixed, ALWAYS, AT(Case, mixed)),
   KEY("analysis", TABLE, NULL, "statics or dynamics, steps", .table = &analysis, REQUIRED, AT(Case, analysis)),
