@@ -46,6 +46,12 @@ refused "truncated" "case.yaml:" "error: "
 
 # Keys
 changed "unknown key" 's/young/yung/' "case.yaml:9:45: error: key 'yung' of materials.rubber is not known" "did you mean 'young'?"
+changed "a mapping left out" 's/on: {x: 0}/x: 0/' "error: key 'x' of boundary[0] is not known" 'hint: write `on: {x: ..}`'
+changed "a list left out" 's/^loads/walls: [{name: w, half-space: {point: [0, 0], normal: [0, 1]}, velocity: [0, 0]}]\nloads/' \
+  'hint: write `shape: {half-space: ..}`' 'hint: write `motion: [{velocity: ..}]` or `mass: {velocity: ..}`'
+changed "one mapping too deep" 's/type: static/gravity: [0, 1], type: static/' 'hint: it belongs elsewhere in the file: `loads: {gravity: ..}`'
+changed "a part of a name" 's/^loads/measures: {f: {force: x}}\nloads/' 'hint: write `wall_force: ..` or `interface_force: ..`'
+changed "nowhere" 's/^loads/bananas: 3\nloads/' "hint: known here: title, kinematics"
 changed "duplicate key" 's/^loads/method: fem\nloads/' "case.yaml:12:1: error: key 'method' stands twice in the file (first in line 3)"
 changed "missing key" '/^method/d' "case.yaml:1:1: error: key 'method' of the file is missing"
 changed "wrong type" 's/90e6/stiff/' "case.yaml:9:52: error: materials.rubber.young must be a number > 0" "not 'stiff'"

@@ -171,6 +171,12 @@ extern const SchemaMagnitude schema_magnitudes[];
 /* The same without messages and bounds. */
 PetscBool schema_parse_number(const YamlNode *node, PetscReal *value);
 PetscBool schema_parse_integer(const YamlNode *node, PetscInt *value);
+/* Does the entry belong to the case's dimension? */
+PetscBool schema_fits(const SchemaReader *r, const SchemaEntry *entry);
+/* "write `motion: [{velocity: ..}]`", for a key that the table does not know and few mappings below it do, or the rest
+ * of the file, or that is a part of a known one; PETSC_FALSE and nothing: there are none, or many
+ * (schema_elsewhere.c). */
+PetscBool schema_hint_elsewhere(SchemaReader *r, const SchemaTable *table, const char *key);
 /* "did you mean 'x'?", or the list of all. */
 void schema_hint_words(SchemaReader *r, const char *word, PetscInt n, const char *const *words);
 /* Read a vector of dim numbers without messages; returns how many there were. */

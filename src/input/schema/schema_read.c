@@ -27,9 +27,9 @@ static SchemaEntry find_entry(const SchemaTable *table, const char *key)
   return entry;
 }
 
-static PetscBool fits(const SchemaReader *r, const SchemaEntry *entry)
+PetscBool schema_fits(const SchemaReader *r, const SchemaEntry *entry)
 {
-  return !((entry->only_2d && r->dim == 3) || (entry->only_3d && r->dim == 2) || (entry->turns && r->hoop));
+  return (PetscBool) !((entry->only_2d && r->dim == 3) || (entry->only_3d && r->dim == 2) || (entry->turns && r->hoop));
 }
 
 /* A key with nothing behind it would count as given for the groups and as absent for the rest, so
@@ -66,11 +66,11 @@ static PetscErrorCode UnknownKeys(SchemaReader *r, const SchemaTable *table, con
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; (entry = schema_entry(table, i)).key && n < 63; ++i)
-    if (fits(r, &entry)) words[n++] = entry.key;
+    if (schema_fits(r, &entry)) words[n++] = entry.key;
   for (PetscInt i = 0; i < mapping->n; ++i) {
     const YamlNode *child = mapping->child[i];
     entry = find_entry(table, child->key);
-    if (entry.key && fits(r, &entry)) continue;
+    if (entry.key && schema_fits(r, &entry)) continue;
     if (entry.key) {
       SchemaKeyError(r, child, "key '%s' of %s %s", child->key, yaml_path(mapping, path, sizeof(path)),
                      entry.turns     ? "has no meaning in axisymmetry: nothing turns, about the axis nor across it"
@@ -80,7 +80,8 @@ static PetscErrorCode UnknownKeys(SchemaReader *r, const SchemaTable *table, con
       if (!strcmp(child->key, "sphere")) diag_hint(r->diag, "in two dimensions there is 'circle'");
     } else {
       SchemaKeyError(r, child, "key '%s' of %s is not known", child->key, yaml_path(mapping, path, sizeof(path)));
-      schema_hint_words(r, child->key, n, words);
+      if (diag_nearest(child->key, words) || !schema_hint_elsewhere(r, table, child->key))
+        schema_hint_words(r, child->key, n, words);
     }
   }
   PetscFunctionReturn(0);
@@ -141,7 +142,7 @@ static PetscErrorCode ReadKey(SchemaReader *r, const SchemaTable *table, const S
   char path[512];
 
   PetscFunctionBeginUser;
-  if (!fits(r, entry)) PetscFunctionReturn(0);
+  if (!schema_fits(r, entry)) PetscFunctionReturn(0);
   if (node) {
     if (entry->with && !yaml_find(mapping, entry->with))
       SchemaKeyError(r, node, "key '%s' of %s means something only beside '%s'", entry->key,
