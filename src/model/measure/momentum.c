@@ -86,7 +86,7 @@ const Measure measure_momentum = {
   .key = "momentum",
   .no_radial = PETSC_TRUE,
   .number = {.unit = "kg m/s",
-             .help = "linear momentum of bodies; a wall with `mass` has that times its `wall_velocity`",
+             .help = "linear momentum of bodies (a wall: its `mass` times `wall_velocity`, as a `formula`)",
              .sum = momentum}};
 const Measure measure_angular_momentum = {
   .key = "angular_momentum",
