@@ -225,4 +225,32 @@ for turned in 0 45; do # a block of 0.5 x 0.75 m, whose weight presses it on one
   near peak "$(last 3)" 7500 0.01
 done
 
+# --- a block on another one, at any angle, whichever is named first ---
+cat >turned.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [-0.5, -0.5], max: [2.5, 2.5]}, size: 0.1}
+bodies:
+  - {name: up, shape: {polygon: [[A], [B], [C], [D]]}, material: m}
+  - {name: low, shape: {polygon: [[E], [F], [G], [H]]}, material: m}
+materials: {m: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
+loads: {gravity: [GX, GY]}
+walls: [{name: w, shape: {half-space: {point: [E], normal: [NX, NY]}}, contact: stick}]
+interfaces: [{name: i, between: [up, low], contact: stick}]
+measures: {force: {interface_force: y, of: {interface: i}}, area: {interface: area, of: {interface: i}}}
+END
+for turned in 0 1 10 17 30 45 80; do # 0.8 x 0.4 m on 1.4 x 0.4 m, with the middle of its foot at (1.013, 0.997)
+  awk -v t=$turned 'function at(k, u, v) { printf "s/\\[%s\\]/[%.12f, %.12f]/; ", k, 1.013 + c * u - s * v, 0.997 + s * u + c * v }
+    BEGIN { c = cos(t * 3.14159265358979 / 180); s = sin(t * 3.14159265358979 / 180)
+    at("A", -0.4, 0); at("B", 0.4, 0); at("C", 0.4, 0.4); at("D", -0.4, 0.4)
+    at("E", -0.7, -0.4); at("F", 0.7, -0.4); at("G", 0.7, 0); at("H", -0.7, 0)
+    printf "s/NX/%.12f/; s/NY/%.12f/; s/GX/%.12f/; s/GY/%.12f/", -s, c, 10 * s, -10 * c }' >turn.sed
+  sed -f turn.sed turned.yaml >case.yaml
+  for order in 'up, low' 'low, up'; do
+    expect "turned by $turned, $order" 0 "$talus" run case.yaml --set "interfaces=[{name: i, between: [$order], contact: stick}]" --out run --force --quiet
+    near area "$(last 4)" 0.8 0.015
+  done
+done
+
 finish

@@ -24,7 +24,8 @@ static void add(Body *b, PetscReal x, PetscReal y, PetscReal size)
                       .F = {1, 0, 0, 0, 1, 0, 0, 0, 1},
                       .first = 0.5 * size,
                       .reach = 0.5 * size,
-                      .size = size};
+                      .size = size,
+                      .own = size};
 }
 
 static void close_body(Body *b)

@@ -66,7 +66,7 @@ static void add(Body *b, const Frame *f, const PetscReal x[3], PetscReal size)
 {
   SurfacePoint *p = b->point + b->surface.n++;
   assert_true(b->surface.n <= MOST);
-  *p = (SurfacePoint){.id = b->surface.n, .first = 0.5 * size, .reach = 0.5 * size, .size = size};
+  *p = (SurfacePoint){.id = b->surface.n, .first = 0.5 * size, .reach = 0.5 * size, .size = size, .own = size};
   for (int i = 0; i < 3; ++i) p->x[i] = x[i];
   for (int i = 0; i < 9; ++i) p->F[i] = f->R[i];
 }

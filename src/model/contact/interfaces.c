@@ -208,8 +208,12 @@ static PetscErrorCode WarnOfStrangers(const Model *m, const SurfaceInput *in, co
 
 PetscErrorCode InterfacesStart(Model *m, Diag *diag)
 {
-  const SurfaceInput in = {
-    .comm = m->comm, .kinematics = m->c->kinematics, .grid = m->grid, .points = m->points, .materials = m->materials};
+  const SurfaceInput in = {.comm = m->comm,
+                           .kinematics = m->c->kinematics,
+                           .grid = m->grid,
+                           .points = m->points,
+                           .materials = m->materials,
+                           .bodies = m->c->bodies};
   PetscReal *bounds;
   PetscMPIInt rank;
   int *share;
@@ -234,8 +238,12 @@ PetscErrorCode InterfacesStart(Model *m, Diag *diag)
 
 PetscErrorCode InterfaceCloses(Model *m, PetscInt k)
 {
-  const SurfaceInput in = {
-    .comm = m->comm, .kinematics = m->c->kinematics, .grid = m->grid, .points = m->points, .materials = m->materials};
+  const SurfaceInput in = {.comm = m->comm,
+                           .kinematics = m->c->kinematics,
+                           .grid = m->grid,
+                           .points = m->points,
+                           .materials = m->materials,
+                           .bodies = m->c->bodies};
   const PetscReal hair = CLOSES * m->grid->smallest;
   PetscReal *bounds;
   PetscMPIInt rank;

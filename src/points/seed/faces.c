@@ -1,6 +1,7 @@
 /* The surface of a body in a cell that it cuts: in its midst, and along the sides of the cell. */
 #include "points/seed/parts_private.h"
 
+#define FLUSH 1e-5 /* of half a cell: the surface is there */
 #define FLAT 1e-12 /* of the reference cell: a place on one of its sides */
 
 /* Where the surface crosses the edges of a simplex, one after the other around it; returns how many. */
@@ -21,6 +22,21 @@ static PetscInt crossings(const Measure *m, const Simplex *s, PetscReal at[4][3]
   return n;
 }
 
+/* Does the surface go through the middle of n places on it? Chips of simplices that hold an edge are inside. */
+static PetscBool is_plane(const Measure *m, PetscInt n, PetscReal at[4][3], const PetscReal *area)
+{
+  PetscReal in[3] = {0}, out[3] = {0}, size = 0;
+  for (PetscInt d = 0; d < m->dim; ++d) size += PetscSqr(area[d]);
+  size = PetscSqrtReal(size);
+  for (PetscInt d = 0; d < m->dim && size > 0; ++d) {
+    PetscReal middle = 0;
+    for (PetscInt i = 0; i < n; ++i) middle += at[i][d] / (PetscReal)n;
+    in[d] = middle - FLUSH * m->half[d] * area[d] / size;
+    out[d] = middle + FLUSH * m->half[d] * area[d] / size;
+  }
+  return (PetscBool)(size > 0 && shape_contains(m->shape, m->dim, in, 0) && !shape_contains(m->shape, m->dim, out, 0));
+}
+
 /* Does the body go on, as one that it sticks to, beyond the middle of n places on its surface? out: outwards. */
 static PetscBool goes_on(const Measure *m, PetscInt n, PetscReal at[4][3], const PetscReal *out)
 {
@@ -33,7 +49,7 @@ static PetscBool goes_on(const Measure *m, PetscInt n, PetscReal at[4][3], const
   return (PetscBool)(square > 0 && seed_is_held(m->seeding, beyond));
 }
 
-void measure_face(const Measure *m, const Simplex *s, PetscReal *face)
+void measure_face(const Measure *m, const Simplex *s, Sum *sum)
 {
   PetscReal at[4][3] = {{0}}, out[3] = {0, 0, 0}, area[3] = {0, 0, 0}, position[3], along = 0;
   const PetscInt n = crossings(m, s, at);
@@ -51,7 +67,8 @@ void measure_face(const Measure *m, const Simplex *s, PetscReal *face)
   for (PetscInt d = 0; d < m->dim; ++d) along += area[d] * out[d];
   for (PetscInt d = 0; d < m->dim; ++d) area[d] *= along < 0 ? -1 : 1;
   if (goes_on(m, n, at, area)) return;
-  for (PetscInt d = 0; d < m->dim; ++d) face[d] += area[d];
+  for (PetscInt d = 0; d < m->dim; ++d) sum->face[d] += area[d];
+  if (is_plane(m, n, at, area)) seed_add_plane(&sum->planes, m->dim, area);
 }
 
 /* Of a segment or triangle with the corners a, b (and c). */

@@ -223,7 +223,7 @@ static void measure(Measure *m, Simplex *s, PetscInt depth)
   if (ends) {
     add(m, s->xi, 1, m->whole + q);
     if (n_inside) add_inside(m, s, n_inside, m->fine + q);
-    if (mixed && m->faces) measure_face(m, s, m->fine[q].face);
+    if (mixed && m->faces) measure_face(m, s, m->fine + q);
     if (n_inside && m->faces) measure_sides(m, s, m->fine[q].side);
     return;
   }
@@ -348,6 +348,7 @@ static void measure_all(const Seeding *s, CellType type, const PetscReal *x, con
     const Sum *sum = m.fine + q;
     part[q] = (SeedPart){.share = (is_whole(&m, q) ? 1 : factor) * sum->volume / whole, .whole = is_whole(&m, q)};
     for (PetscInt d = 0; d < dim; ++d) part[q].face[d] = sum->face[d];
+    part[q].planes = sum->planes;
     for (PetscInt k = 0; k < CELL_MOST_SIDES; ++k) part[q].side[k] = sum->side[k];
     for (PetscInt d = 0; d < dim && part[q].share >= SEED_NOTHING; ++d) {
       part[q].xi[d] = sum->moment[d] / sum->volume;

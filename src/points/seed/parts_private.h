@@ -5,6 +5,7 @@
 typedef struct {
   PetscReal volume, moment[3], second[3]; /* of the reference cell, times det dx/dxi */
   PetscReal face[3];                      /* the body's surface as a vector outwards, m2, */
+  SeedPlanes planes;                      /* likewise, what looks the same way together, */
   PetscReal side[CELL_MOST_SIDES];        /* but for that along the sides of the cell: which share of each */
 } Sum;
 
@@ -40,6 +41,6 @@ void measure_cross(const Measure *m, const PetscReal *inside, const PetscReal *o
 void measure_begin_sides(Measure *m);
 /* faces.c. Adds the part of the surface in a simplex that it crosses, as a vector outwards, but for what lies at a body
  * that this one sticks to. */
-void measure_face(const Measure *m, const Simplex *s, PetscReal *face);
+void measure_face(const Measure *m, const Simplex *s, Sum *sum);
 /* faces.c. Adds which share of each side of the cell is a side of the simplex, and inside the body. */
 void measure_sides(const Measure *m, const Simplex *s, PetscReal *side);

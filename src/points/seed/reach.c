@@ -167,20 +167,29 @@ static PetscBool is_beyond(CellType type, const PetscReal *x, const PetscReal *p
   return (PetscBool)(!outer[side] && PetscAbsReal(away) > (1 + SEED_NOTHING) * PetscAbsReal(end));
 }
 
-void seed_corner_of_part(const Seeding *s, CellType type, const PetscReal *x, const SeedPart *part,
-                         const PetscReal *position, PetscReal reach, const unsigned char *outer, PetscReal *corner)
+/* To ends straight across the axes. */
+static void corner_along_axes(const Seeding *s, CellType type, const PetscReal *x, const PetscReal *half,
+                              const PetscReal *position, const unsigned char *outer, PetscReal *corner)
 {
-  const PetscInt dim = s->source->dim;
-  PetscReal half[3], square = 0;
-  if (!seed_half_sides(type, x, half)) return;
-  for (PetscInt d = 0; d < dim; ++d) half[d] *= PetscSqrtReal(3 * part->spread[d]); /* of what fills its part evenly */
-  for (PetscInt d = 0; d < dim; ++d) {
+  for (PetscInt d = 0; d < s->source->dim; ++d) {
     PetscReal low = straight_end(s, position, d, -half[d], half), high = straight_end(s, position, d, half[d], half);
     if (low != 0 && is_beyond(type, x, position, d, low, outer)) low = 0;
     if (high != 0 && is_beyond(type, x, position, d, high, outer)) high = 0;
     corner[d] = low != 0 && high != 0 ? 0 : low + high;
-    square += PetscSqr(corner[d]);
   }
+}
+
+void seed_corner_of_part(const Seeding *s, CellType type, const PetscReal *x, const SeedPart *part,
+                         const PetscReal *position, PetscReal reach, const unsigned char *outer, PetscReal *corner)
+{
+  const PetscInt dim = s->source->dim;
+  PetscReal half[3], square = 0, across = 0;
+  if (!seed_half_sides(type, x, half)) return;
+  for (PetscInt d = 0; d < dim; ++d) across += PetscSqr(2 * half[d]);
+  for (PetscInt d = 0; d < dim; ++d) half[d] *= PetscSqrtReal(3 * part->spread[d]); /* of what fills its part evenly */
+  if (!seed_corner_of_planes(s, &part->planes, position, PetscSqrtReal(across), corner))
+    corner_along_axes(s, type, x, half, position, outer, corner);
+  for (PetscInt d = 0; d < dim; ++d) square += PetscSqr(corner[d]);
   for (PetscInt d = 0; d < dim && square <= PetscSqr((1 + WITHIN) * reach); ++d) corner[d] = 0;
 }
 
@@ -218,8 +227,7 @@ void seed_face(const Seeding *s, PetscInt cell, const PetscReal *x, PetscInt q, 
   }
 }
 
-/* From a place in the body to where it ends along a unit vector, and bodies that it sticks to do; `most` at most. */
-static PetscReal way_out(const Seeding *s, const PetscReal *position, const PetscReal *along, PetscReal most)
+PetscReal seed_way_out(const Seeding *s, const PetscReal *position, const PetscReal *along, PetscReal most)
 {
   PetscReal low = 0, high = most;
   if (has_at(s, position, along, most)) return most;
@@ -255,7 +263,7 @@ static PetscReal depth_below(const Seeding *s, const PetscReal *face, const Pets
   if (!is_nearest_to_seam(s, position, depth, side)) return depth;
   if (square == 0) return side;
   for (PetscInt d = 0; d < dim; ++d) along[d] = face[d] / PetscSqrtReal(square);
-  return way_out(s, position, along, side);
+  return seed_way_out(s, position, along, side);
 }
 
 PetscReal seed_depth(const Seeding *s, const SeedPart *part, const PetscReal *position, PetscReal usual, PetscReal side)

@@ -13,11 +13,20 @@ typedef struct {
   PetscReal xi[3 * SEED_MAX_RULE], weight[SEED_MAX_RULE];
 } SeedRule;
 
+#define SEED_PLANES 6 /* most of a part that are told apart */
+
+/* What of a body's surface is plane in a part, as vectors outwards, m2. */
+typedef struct {
+  PetscInt n;
+  PetscReal area[SEED_PLANES][3];
+} SeedPlanes;
+
 /* What of a point's part of its cell lies in the body: its share of the cell, and where the
  * middle of that is. */
 typedef struct {
   PetscReal share, xi[3], spread[3]; /* spread: mean square of xi about that */
   PetscReal face[3];                 /* the body's surface in it, where that is asked for, as a vector outwards, m2, */
+  SeedPlanes planes;                 /* of which this is the sum, */
   PetscReal side[CELL_MOST_SIDES];   /* and along the sides of the cell, should these be surface: which share of each */
   PetscBool whole;                   /* all of the part does */
 } SeedPart;
@@ -89,6 +98,16 @@ void seed_place_at_side(CellType type, const PetscReal *x, PetscInt side, const 
 /* slivers.c. Points that are next to nothing go to those beside them, or, where a cell has no others, are one: whatever
  * comes first, so that a body and its image in a mirror have the same points. */
 void seed_join_slivers(SeedPart *part, PetscInt n, PetscInt dim);
+/* planes.c. Adds a piece of surface to that which looks the same way. What there is no room for is bent. */
+void seed_add_plane(SeedPlanes *planes, PetscInt dim, const PetscReal *area);
+void seed_add_planes(SeedPlanes *planes, PetscInt dim, PetscReal share, const SeedPlanes *more);
+/* planes.c. The corner or edge at which planes of the part meet at right angles, from a place in it; PETSC_FALSE: they
+ * do not. */
+PetscBool seed_corner_of_planes(const Seeding *s, const SeedPlanes *planes, const PetscReal *position, PetscReal most,
+                                PetscReal *corner);
+/* reach.c. From a place in the body to where it, and bodies that it sticks to, end along a unit vector; `most` at
+ * most. */
+PetscReal seed_way_out(const Seeding *s, const PetscReal *position, const PetscReal *along, PetscReal most);
 /* A surface along the line between two parts is found in the one beyond it, which has nothing of the body: it is that
  * of the nearest one that has. */
 void seed_hand_on_faces(SeedPart *part, const SeedRule *rule, PetscInt dim);

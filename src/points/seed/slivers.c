@@ -38,6 +38,7 @@ static void give(const SeedPart *from, PetscReal share, PetscInt dim, SeedPart *
     to->xi[d] = (to->share * to->xi[d] + volume * from->xi[d]) / sum;
   }
   for (PetscInt k = 0; k < CELL_MOST_SIDES; ++k) to->side[k] += share * from->side[k];
+  seed_add_planes(&to->planes, dim, share, &from->planes);
   to->share = sum;
   to->whole = PETSC_FALSE;
 }
@@ -76,6 +77,8 @@ void seed_hand_on_faces(SeedPart *part, const SeedRule *rule, PetscInt dim)
         to = p;
     for (PetscInt d = 0; d < dim && to >= 0; ++d) part[to].face[d] += part[q].face[d];
     for (PetscInt k = 0; k < CELL_MOST_SIDES && to >= 0; ++k) part[to].side[k] += part[q].side[k];
+    if (to >= 0) seed_add_planes(&part[to].planes, dim, 1, &part[q].planes);
+    part[q].planes.n = 0;
     for (PetscInt d = 0; d < dim; ++d) part[q].face[d] = 0;
     for (PetscInt k = 0; k < CELL_MOST_SIDES; ++k) part[q].side[k] = 0;
   }

@@ -128,6 +128,7 @@ PetscErrorCode ContactFindBodies(Contact *s, const NodalScene *scene)
                            .grid = scene->grid,
                            .points = scene->points,
                            .materials = scene->materials,
+                           .bodies = c->bodies,
                            .support = scene->support,
                            .bends = scene->bends,
                            .bends_context = scene->bends_context};

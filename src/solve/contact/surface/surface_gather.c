@@ -1,5 +1,11 @@
 /* The points of a body that another one may reach, on all ranks. */
+#include "base/math/vector.h"
+#include "points/split.h"
+#include "solve/contact/contact.h"
 #include "solve/contact/surface/surface.h"
+
+#define CUT 0.99 /* of the size of a whole part: round-off cuts nothing */
+#define TORN 0.5 /* strain beyond which nobody knows where a surface looks */
 
 PetscErrorCode SurfaceBounds(const SurfaceInput *in, PetscInt n_bodies, PetscReal *bounds)
 {
@@ -24,6 +30,34 @@ PetscBool surface_near(const PetscReal *x, PetscInt dim, const PetscReal *box, P
   return PETSC_TRUE;
 }
 
+/* Volume, in the plane area, of the part of a point that no surface cuts, of those that were given some of it; 0: not
+ * known. */
+static PetscReal uncut(const SurfaceInput *in, PetscInt p)
+{
+  const Points *points = in->points;
+  const BodySpec *body = in->bodies ? in->bodies + points->body[p] : NULL;
+  PetscReal x[CELL_MAX_NODES * 3];
+  if (!body || body->mesh || in->grid->cloud || points->cell[p] < 0) return 0;
+  if (points->id[p] != point_seed_id(points->id[p])) return 0; /* a half of one */
+  grid_cell_x(in->grid, points->cell[p], x);
+  return cell_volume(grid_cell_type(in->grid, points->cell[p]), x) / (PetscReal)body->points_per_cell;
+}
+
+/* The surface that a point was given, as it is now: J F^-T A, in the plane a length. Of what has flowed nobody knows
+ * where it looks. */
+static void take_face(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
+{
+  const Points *points = in->points;
+  const PetscInt dim = points->components[POINT_FACE];
+  const PetscReal *face = dim ? point_real(points, POINT_FACE, p) : NULL, *F = s->F;
+  if (!dim || (in->materials[points->material[p]].law->yields && contact_is_strained(points, p, TORN))) return;
+  for (int i = 0; i < 3; ++i) {
+    PetscReal row[3];
+    vector_cross(F + 3 * ((i + 1) % 3), F + 3 * ((i + 2) % 3), row);
+    for (PetscInt d = 0; d < dim; ++d) s->face[i] += row[d] * face[d] / (dim == 2 ? F[8] : 1);
+  }
+}
+
 static void describe(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
 {
   const Points *points = in->points;
@@ -43,6 +77,11 @@ static void describe(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
   const PetscReal J = points->real[POINT_J][p], volume = J * points->real[POINT_VOLUME][p];
   s->reach = s->first * (points->dim == 2 ? PetscSqrtReal(J / s->F[8]) : PetscCbrtReal(J));
   s->size = points->dim == 2 ? PetscSqrtReal(volume / weight) : PetscCbrtReal(volume);
+  s->own = s->size;
+  take_face(in, p, s);
+  if (vector_dot(s->face, s->face) == 0) return;
+  const PetscReal whole = J * uncut(in, p), side = points->dim == 2 ? PetscSqrtReal(whole) : PetscCbrtReal(whole);
+  if (s->size < CUT * side) s->size = side;
 }
 
 /* Those of the last point; there is room for them. */

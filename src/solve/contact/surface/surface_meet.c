@@ -7,12 +7,14 @@
 #include "solve/contact/surface/surface_hull.h"
 
 #define OUTSTANDING 0.05 /* of a point's size: how much farther out makes up for standing that far aside */
+#define STRAIGHT 1.4     /* of half of what a point was given: its middle is at most a sixth off that of its part */
 #define BESIDE \
   1.175 /* of a point's size: neighbours are within it (1.15 of Gauss points), those across a corner not (1.2) */
 #define DEEPER 0.05       /* of a point's size: by more than that a side is none, as of points that stand in steps */
 #define IN_FRONT 0.25     /* of a point's size: what stands so far before a surface belongs to another side */
 #define BEHIND 0.375      /* of two points' size: so far aside one still stands before the other: 0.71 at an edge, */
 #define BEHIND_SPACE 0.42 /* and 0.82 at a corner of space */
+#define LOOKS 0.5         /* cosine between a surface and the way to the other body */
 #define A_LITTLE (1 + 1e-9)
 #define PASSES_SPACE 2 /* towards a side: of neighbours alone few see one of space whole */
 
@@ -65,27 +67,73 @@ static void offset(const SurfacePoint *p, const SurfacePoint *q, const PetscReal
   *across = PetscSqrtReal(vector_dot(aside, aside));
 }
 
+/* From a point to the surface of its body along n. (A corner counts towards a wall, against its normal.) */
+static PetscReal reach_along(PetscInt dim, const SurfacePoint *p, const PetscReal n[3])
+{
+  const PetscReal back[3] = {-n[0], -n[1], -n[2]};
+  return contact_reach(p->F, back, p->first, p->corner, dim);
+}
+
+/* How wide the part of a point is across n: at least what it was given of the surface there is. */
+static PetscReal width(PetscInt dim, const SurfacePoint *p, const PetscReal n[3])
+{
+  const PetscReal face = PetscAbsReal(vector_dot(p->face, n));
+  return PetscMax(p->size, dim == 2 ? face : PetscSqrtReal(face));
+}
+
+/* Was p given surface that looks at what stands before it? */
+static PetscBool looks_out(const SurfacePoint *p, const PetscReal n[3])
+{
+  const PetscReal along = -vector_dot(p->face, n);
+  return (PetscBool)(along > 0 && PetscSqr(along) > PetscSqr(LOOKS) * vector_dot(p->face, p->face));
+}
+
 /* Does another point of its body stand before p? */
 static PetscBool is_behind(const Part *a, const SurfacePoint *p, const PetscReal n[3])
 {
   const PetscReal within = a->dim == 2 ? BEHIND : BEHIND_SPACE;
   PetscReal along, across;
+  if (looks_out(p, n)) return PETSC_FALSE;
   for (PetscInt k = 0; k < a->n; ++k) {
     offset(p, a->point[k], n, &along, &across);
+    if (along > 0 && looks_out(a->point[k], n) && across < 0.5 * width(a->dim, a->point[k], n)) return PETSC_TRUE;
     if (along > 0.5 * p->size && across < within * (p->size + a->point[k]->size)) return PETSC_TRUE;
   }
   return PETSC_FALSE;
+}
+
+/* Of what was given surface that looks at p, the one that p is most nearly straight before, if it is: that surface is
+ * the body's there, wherever the middle of its part is, and whatever stands behind it. */
+static const SurfacePoint *straight_before(const Part *b, const SurfacePoint *p, const PetscReal n[3])
+{
+  const PetscReal back[3] = {-n[0], -n[1], -n[2]};
+  const SurfacePoint *best = NULL;
+  PetscReal along, across, least = STRAIGHT;
+  for (PetscInt k = 0; k < b->n; ++k) {
+    const SurfacePoint *q = b->point[k];
+    if (!looks_out(q, back)) continue;
+    offset(p, q, n, &along, &across);
+    const PetscReal share = across / (0.5 * width(b->dim, q, n));
+    if (share < least) least = share, best = q;
+  }
+  return best;
 }
 
 /* The outermost point of b whose part lies before that of p; of those as far out the nearest. */
 static PetscBool choose(const Part *b, const SurfacePoint *p, SurfacePair *pair)
 {
   PetscReal along, across, least = PETSC_MAX_REAL;
+  pair->other = straight_before(b, p, pair->normal);
+  if (pair->other) {
+    offset(p, pair->other, pair->normal, &along, &across);
+    pair->gap = along - reach_along(b->dim, pair->other, pair->normal);
+    return PETSC_TRUE;
+  }
   for (PetscInt k = 0; k < b->n; ++k) {
     const SurfacePoint *q = b->point[k];
     offset(p, q, pair->normal, &along, &across);
-    if (across > 0.5 * (p->size + q->size)) continue;
-    const PetscReal gap = along - contact_reach(q->F, pair->normal, q->first, q->corner, b->dim);
+    if (across > 0.5 * (width(b->dim, p, pair->normal) + width(b->dim, q, pair->normal))) continue;
+    const PetscReal gap = along - reach_along(b->dim, q, pair->normal);
     const PetscReal key = gap + OUTSTANDING * across * across / q->size;
     if (key >= least) continue;
     least = key;
@@ -103,15 +151,21 @@ static void beside(const Part *part, const SurfacePoint *p, Part *beside)
     if (square(part->point[k]->x, p->x) <= PetscSqr(BESIDE * p->size)) part_add(beside, part->point[k]);
 }
 
+/* Does s stand before the surface of q, with its middle and its own surface? Parts that the surface cuts have their
+ * middles at any depth below it. */
+static PetscBool is_before(PetscInt dim, const SurfacePoint *s, const SurfacePoint *q, const PetscReal n[3])
+{
+  const PetscReal r[3] = {s->x[0] - q->x[0], s->x[1] - q->x[1], s->x[2] - q->x[2]}, ahead = vector_dot(r, n);
+  if (ahead <= IN_FRONT * q->size) return PETSC_FALSE;
+  return (PetscBool)(ahead + reach_along(dim, s, n) > reach_along(dim, q, n) + IN_FRONT * q->size);
+}
+
 /* Of a part what does not stand before the surface of q. */
 static PetscBool clear_front(const Part *part, const SurfacePoint *q, const PetscReal n[3], Part *clear)
 {
-  const PetscReal *o = q->x;
   part_begin(clear, part->dim);
-  for (PetscInt k = 0; k < part->n; ++k) {
-    const PetscReal *x = part->point[k]->x, r[3] = {x[0] - o[0], x[1] - o[1], x[2] - o[2]};
-    if (vector_dot(r, n) <= IN_FRONT * q->size) part_add(clear, part->point[k]);
-  }
+  for (PetscInt k = 0; k < part->n; ++k)
+    if (!is_before(part->dim, part->point[k], q, n)) part_add(clear, part->point[k]);
   return (PetscBool)(clear->n < part->n);
 }
 

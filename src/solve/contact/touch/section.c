@@ -1,7 +1,10 @@
 /* The surface that a material point stands for before a wall. */
 #include "solve/contact/contact.h"
 
-#define LEAST 0.25 /* of the side of a square of the point's volume: what stands before a wall is no smaller */
+#define LEAST \
+  0.25 /* of the side of a square of the point's volume: what stands before a wall that its surface does not look \
+                    at is no smaller */
+#define AWAY 0.1   /* cosine: a surface that looks elsewhere, for that */
 #define ASIDE 1e-3 /* cosine: a surface that looks elsewhere */
 #define TORN 0.5   /* change of an edge's length, or of an angle, beyond which nobody knows where a surface looks */
 
@@ -66,13 +69,13 @@ static PetscBool is_torn(const NodalScene *scene, PetscInt p)
                      contact_is_strained(scene->points, p, TORN));
 }
 
-/* Was the point given some of its body's surface? */
-static PetscBool knows_its_face(const Points *points, PetscInt p)
+/* How much of its body's surface the point was given, as a vector, m2. */
+static PetscReal given_face(const Points *points, PetscInt p)
 {
-  PetscReal given = 0;
+  PetscReal square = 0;
   for (PetscInt d = 0; d < points->components[POINT_FACE]; ++d)
-    given += PetscAbsReal(point_real(points, POINT_FACE, p)[d]);
-  return (PetscBool)(given > 0);
+    square += PetscSqr(point_real(points, POINT_FACE, p)[d]);
+  return PetscSqrtReal(square);
 }
 
 /* Does it stand beside the surface that looks at n? Of cells whose sides are at right angles the corner tells. */
@@ -125,7 +128,9 @@ PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n
   const PetscReal volume = piece_of(points, p, n, torn, &grown) / kinematics_weight(scene->c->kinematics, radius[0]);
   const PetscReal square = PetscPowReal(volume, power), face = contact_face(points, p, n);
   grown *= kinematics_weight(scene->c->kinematics, PetscMax(radius[1], LEAST * radius[0]));
-  if (face > 0 || (knows_its_face(points, p) && !torn)) return PetscMax(face, LEAST * square) * grown;
+  const PetscReal given = given_face(points, p);
+  if (face > AWAY * given) return face * grown;
+  if (given > 0 && !torn) return PetscMax(face, LEAST * square) * grown;
   if (grid->cloud || points->cell[p] < 0 || body->mesh) return square * grown;
   const Cell *cell = grid_cell(grid, points->cell[p]);
   grid_cell_x(grid, points->cell[p], x);
