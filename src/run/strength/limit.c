@@ -67,20 +67,30 @@ PetscErrorCode LimitBegin(LimitRun *s, Model *m)
   PetscFunctionReturn(0);
 }
 
+/* Along the displacement: that of a wall which goes away from what presses on it is below zero all the time. 0: no load
+ * has stood. */
 static PetscReal largest_load(const LimitRun *s)
 {
+  PetscReal most = s->n > 1 ? s->rows[1].load : 0;
+  for (PetscInt i = 2; i < s->n; ++i) most = PetscMax(most, s->rows[i].load);
+  return most;
+}
+
+/* What a change of load is measured by. */
+static PetscReal size_of_loads(const LimitRun *s)
+{
   PetscReal most = 0;
-  for (PetscInt i = 1; i < s->n; ++i) most = PetscMax(most, s->rows[i].load);
+  for (PetscInt i = 0; i < s->n; ++i) most = PetscMax(most, PetscAbsReal(s->rows[i].load));
   return most;
 }
 
 /* By how much the load grew while the displacement doubled, over the largest; 1 as long as there is no half. */
 static PetscReal growth(const LimitRun *s)
 {
-  const PetscReal most = largest_load(s), half = 0.5 * s->rows[s->n - 1].displacement;
+  const PetscReal size = size_of_loads(s), half = 0.5 * s->rows[s->n - 1].displacement;
   PetscInt i = s->n - 1;
   while (i > 0 && s->rows[i].displacement > half) --i;
-  return i > 0 && most > 0 ? (most - s->rows[i].load) / most : 1;
+  return i > 0 && size > 0 ? (largest_load(s) - s->rows[i].load) / size : 1;
 }
 
 /* Where steps are tiny: what the load would grow by, over the largest, while the displacement doubles, if it went on as
@@ -89,10 +99,10 @@ static PetscReal creep(const LimitRun *s)
 {
   if (s->n <= CREPT) return 1;
   const LimitRow *b = &s->rows[s->n - 1], *a = b - CREPT;
-  const PetscReal way = b->displacement - a->displacement, work = b->work - a->work, most = largest_load(s);
-  if (b->control - a->control > CREPT * TINY * b->control || way <= 0 || work <= 0 || most <= 0) return 1;
+  const PetscReal way = b->displacement - a->displacement, work = b->work - a->work, size = size_of_loads(s);
+  if (b->control - a->control > CREPT * TINY * b->control || way <= 0 || work <= 0 || size <= 0) return 1;
   if (PetscAbsReal(b->stored - a->stored) > STORED * work) return 1;
-  return (b->load - a->load) / way * b->displacement / most;
+  return (b->load - a->load) / way * b->displacement / size;
 }
 
 static LimitOutcome judge(const LimitRun *s, const LimitSpec *spec, PetscBool forces)
@@ -100,7 +110,7 @@ static LimitOutcome judge(const LimitRun *s, const LimitSpec *spec, PetscBool fo
   const LimitRow *last = &s->rows[s->n - 1];
   const PetscReal most = largest_load(s);
   if (growth(s) <= spec->tolerance) return LIMIT_HOLDS;
-  if (last->load < (1 - FALLEN * spec->tolerance) * most) return LIMIT_FALLS;
+  if (last->load < most - FALLEN * spec->tolerance * size_of_loads(s)) return LIMIT_FALLS;
   if (creep(s) <= spec->tolerance) return LIMIT_FLOWS;
   return (forces ? most : last->control * (1 + 1e-9)) >= spec->most ? LIMIT_MOST : LIMIT_RISES;
 }
@@ -195,10 +205,10 @@ PetscErrorCode LimitEnd(const LimitRun *s, Model *m, RunDir *dir)
 
   PetscFunctionBeginUser;
   m->raised.unfound = !found;
-  m->raised.value = found || largest_load(s) > 0 ? largest_load(s) : NAN;
+  m->raised.value = found || largest_load(s) != 0 ? largest_load(s) : NAN;
   PetscCall(TellLoad(s, dir));
   PetscCall(RunDirLog(dir, "by energy = %.1f %% of the load's last work was stored", 100 * (double)share_stored(s)));
-  if (!found && m->raised.value > 0)
+  if (!found && !PetscIsNanReal(m->raised.value))
     PetscCall(RunDirLog(dir, "warning = no limit was found: the load is the largest that was reached"));
   else if (!found)
     PetscCall(RunDirLog(dir,
