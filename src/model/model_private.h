@@ -190,6 +190,8 @@ PetscErrorCode WallsAppear(const Model *model, StepReport *report);
 /* contact/interfaces.c. Collective. What no interfaces can be made of, and bodies that go through each
  * other at the start. */
 PetscErrorCode InterfacesStart(Model *model, Diag *diag);
+/* Collective. What was made to fit touches exactly, after all that changes surfaces at the start. */
+PetscErrorCode InterfacesSettle(Model *model);
 /* Collective. One of the bodies of interface k has just come: where it was drawn to touch the other one, which has
  * settled since, it does, up to a tenth of a cell. */
 PetscErrorCode InterfaceCloses(Model *model, PetscInt k);

@@ -89,21 +89,34 @@ static void check_twice(const Case *c, Diag *diag)
   }
 }
 
+/* How far point p reaches at interface k, m, as contact will have it; 0: nothing has said so. */
+static PetscReal *reach_at(const Model *m, PetscInt k, PetscInt p)
+{
+  return contact_kept(m->points, p, m->c->n_walls + k, contact_sides(m->c), 0) + KEPT_REACH;
+}
+
 /* Point p of interface k ends where the other body begins. */
 static void reach_over(Model *m, PetscInt k, PetscInt p, const SurfacePair *pair)
 {
-  const PetscInt partner = m->c->n_walls + k;
-  contact_kept(m->points, p, partner, contact_sides(m->c), 0)[KEPT_REACH] = pair->gap;
+  *reach_at(m, k, p) = pair->gap;
   contact_let_reach(m->points, p, pair->normal, pair->gap);
 }
 
+/* Of a point with so much between its surface and the other body (reach: what it has of its own): was that made to
+ * fit? Bodies that are bonded more generously, or only some of what is at their polygons would be held. */
+static PetscBool is_fitted(const Model *m, PetscInt k, const SurfacePoint *p, PetscReal reach, PetscReal gap)
+{
+  const PetscBool bonded = (PetscBool)(m->c->interfaces[k].contact == CONTACT_BONDED);
+  const PetscReal through = PetscMin(PetscMax(THROUGH * reach, SLIVER * m->grid->smallest), (1 - THROUGH) * reach);
+  return (PetscBool)(gap > -through && gap < (bonded ? MADE_TO_FIT * p->size : HAIR * m->grid->smallest));
+}
+
 /* Surfaces that were made to fit do so but for their polygons: their parts of the first body are made thinner, and
- * where the bodies are bonded thicker, too, or only some of them would be held. *worst: the deepest of this rank that
- * was not. Returns the largest change, m: of what has changed normals have, too. */
+ * where the bodies are bonded thicker, too. *worst: the deepest of this rank that was not made to fit. Returns the
+ * largest change, m: of what has changed normals have, too. */
 static PetscReal fit(Model *m, PetscInt k, const Surface *first, const Surface *second, LostPoint *worst,
                      PetscReal *deepest)
 {
-  const PetscBool bonded = (PetscBool)(m->c->interfaces[k].contact == CONTACT_BONDED);
   PetscReal changed = 0;
   SurfacePair pair;
   PetscMPIInt rank;
@@ -111,17 +124,28 @@ static PetscReal fit(Model *m, PetscInt k, const Surface *first, const Surface *
   for (const SurfacePoint *p = first->point; p < first->point + first->n; ++p) {
     if (p->rank != rank || !surface_meet(first, p, second, m->grid->smallest, &pair)) continue;
     const PetscReal reach = contact_reach_of(m->points, p->owner, pair.normal), gap = pair.gap - reach;
-    const PetscBool over = (PetscBool)(gap > 0 && gap < (bonded ? MADE_TO_FIT * p->size : HAIR * m->grid->smallest));
-    const PetscReal through = PetscMin(PetscMax(THROUGH * reach, SLIVER * m->grid->smallest), (1 - THROUGH) * reach);
-    const PetscBool back = (PetscBool)(gap < 0 && gap > -through);
-    if (over) reach_over(m, k, p->owner, &pair);
-    if (back) contact_take_back(m->points, p->owner, pair.normal, pair.gap);
-    if (over || back) changed = PetscMax(changed, PetscAbsReal(gap));
-    if (gap >= 0 || back || gap >= *deepest) continue;
+    const PetscBool fitted = is_fitted(m, k, p, reach, gap);
+    if (fitted) changed = PetscMax(changed, PetscAbsReal(gap));
+    if (fitted && gap < 0) contact_take_back(m->points, p->owner, pair.normal, pair.gap);
+    if (fitted) reach_over(m, k, p->owner, &pair);
+    if (gap >= 0 || fitted || gap >= *deepest) continue;
     *deepest = gap;
     PetscCallAbort(m->comm, PetscArraycpy(worst->x, p->x, 3));
   }
   return changed;
+}
+
+/* What was made to fit begins with neither gap nor overlap: its points end where the other body is found to begin, now
+ * that nothing of either surface changes any more. */
+static void settle(Model *m, PetscInt k, const Surface *first, const Surface *second)
+{
+  SurfacePair pair;
+  PetscMPIInt rank;
+  MPI_Comm_rank(m->comm, &rank);
+  for (const SurfacePoint *p = first->point; p < first->point + first->n; ++p) {
+    if (p->rank != rank || *reach_at(m, k, p->owner) == 0) continue;
+    if (surface_meet(first, p, second, m->grid->smallest, &pair) && pair.gap > 0) *reach_at(m, k, p->owner) = pair.gap;
+  }
 }
 
 /* What the bodies of interface k have near each other. */
@@ -233,6 +257,26 @@ PetscErrorCode InterfacesStart(Model *m, Diag *diag)
   if (m->method->clouds) PetscCall(WarnOfStrangers(m, &in, bounds, share, diag));
   PetscCall(PetscFree(bounds));
   PetscCall(PetscFree(share));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode InterfacesSettle(Model *m)
+{
+  const SurfaceInput in = {
+    .comm = m->comm, .kinematics = m->c->kinematics, .grid = m->grid, .points = m->points, .materials = m->materials};
+  PetscReal *bounds;
+  Surface body[2];
+
+  PetscFunctionBeginUser;
+  if (!m->c->n_interfaces) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(6 * m->c->n_bodies, &bounds));
+  PetscCall(SurfaceBounds(&in, m->c->n_bodies, bounds));
+  for (PetscInt k = 0; k < m->c->n_interfaces; ++k) {
+    PetscCall(GatherBoth(m, &in, bounds, k, body));
+    settle(m, k, body, body + 1);
+    for (int i = 0; i < 2; ++i) PetscCall(SurfaceClear(body + i));
+  }
+  PetscCall(PetscFree(bounds));
   PetscFunctionReturn(0);
 }
 

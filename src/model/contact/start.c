@@ -197,6 +197,7 @@ PetscErrorCode WallsStart(Model *m, Diag *diag)
     PetscCall(TellThrough(m, k, &inside, diag));
     PetscCall(TellDent(m, k, &dent, diag));
   }
+  PetscCall(InterfacesSettle(m));
   PetscFunctionReturn(0);
 }
 

@@ -11,11 +11,14 @@
 
 #define CLOSED 1e-5 /* of a cell: gaps and slips that remain of contact, */
 /* but no more than that share of what it moves by in the step, or its wall: a block that is squeezed by less than such
- * a gap would bear any force. Less than the last, of a cell, is round-off. */
+ * a gap would bear any force. Less than so much, of a cell, counts for nothing, unless it is more than a share as large
+ * of what the largest force there takes: stiff bodies under little are squeezed by less. The last is round-off. */
 #define MOVING 1e-3
 #define STANDING 1e-9
+#define ROUND_OFF 1e-16
 #define TRIES 6      /* changes in which that is sought: a step must not fail for it */
-#define BARELY 1e-10 /* of a cell: what touches at the start is pressed as by such a gap: less than any weight */
+#define BARELY 1e-16 /* of a cell: what touches at the start is pressed as by such a gap: less than any load */
+#define NO_FORCE 1e-10 /* likewise: what is pressed by no more may have been left by round-off */
 /* Where grains flow, that share of what the surface moves in the step, up to so much of a cell. */
 #define MOVED 3e-3
 #define FLOWING 5e-4
@@ -57,23 +60,31 @@ static PetscReal goes_on(const Contact *s, const ContactPoint *c)
   return s->share.fades ? GOES_ON : 1;
 }
 
+/* Is it pressed by so little that this may be what round-off has left? In statics a body may slide on all of that. */
+static PetscBool is_idle(const Contact *s, const ContactPoint *c)
+{
+  const PetscReal least = (NO_FORCE * s->length + PetscMax(c->open, 0)) * c->law.penalty;
+  return (PetscBool)(!s->share.moves && c->law.kind != CONTACT_BONDED && c->multiplier.pressure <= least);
+}
+
 /* Those of the last step, and as much more or less as the gap that it left takes away: of a stiff body that
  * is no little force, and if it let go everywhere at once nothing would hold it; and what rests is to stay
- * where it is. What had none and touches the wall gets one so small that it counts for nothing: it is in contact from
- * the first iteration on. In statics so does what had round-off for a force, which may slide on all that it touches,
- * and there as much more as the gap that there is takes away. */
+ * where it is. What had none and touches the wall gets one so small that it counts for nothing, and as much more as the
+ * gap that there is takes away (in dynamics one of round-off): it is in contact from the first iteration on. So is what
+ * is idle, and where that slid it begins anew to do so. */
 static void first_multiplier(const Contact *s, ContactPoint *c)
 {
   const PetscReal whole = goes_on(s, c) / s->share.mean;
+  const PetscReal bridged = PetscMin(s->share.moves ? NO_FORCE * s->length : PETSC_MAX_REAL, PetscMax(c->open, 0));
+  const PetscReal barely = (BARELY * s->length + bridged) * c->law.penalty;
   c->multiplier = (ContactForce){0};
   for (int d = 0; d < 3; ++d) c->multiplier.pressure += whole * c->last[d] * c->normal[d];
   for (int d = 0; d < 3; ++d) c->multiplier.shear[d] = whole * c->last[d] - c->multiplier.pressure * c->normal[d];
   if (c->before != CONTACT_OPEN && c->open > -CLOSED * s->length) c->multiplier.pressure += c->law.penalty * c->open;
-  const PetscReal open = s->share.moves ? 0 : PetscMax(c->open, 0);
-  const PetscReal barely = (BARELY * s->length + open) * c->law.penalty;
-  const PetscBool goes =
-    (PetscBool)(s->share.moves || c->law.kind == CONTACT_BONDED || c->multiplier.pressure > barely);
-  if (c->touches && (c->before == CONTACT_OPEN || !goes)) c->multiplier = (ContactForce){.pressure = barely};
+  if (!c->touches || (c->before != CONTACT_OPEN && !is_idle(s, c))) return;
+  if (c->before == CONTACT_OPEN) c->multiplier.pressure = barely;
+  c->multiplier.pressure = PetscMax(c->multiplier.pressure, barely);
+  for (int d = 0; d < 3 && c->before != CONTACT_STICKS; ++d) c->multiplier.shear[d] = 0;
 }
 
 /* What a cell of one material opposes to a pressure, N/m3; of two that stand behind each other. */
@@ -251,10 +262,13 @@ static PetscInt tries(const Contact *s)
   return TRIES + (PetscInt)PetscCeilReal(PetscLogReal(1 / s->share.asked) / PetscLogReal(STIFFER));
 }
 
-/* What may stay of gaps, or of slips, which `times` as much may; moved: against the wall, and at all. */
-static PetscReal allowed(const Contact *s, PetscInt change, PetscReal moved, PetscReal travelled, PetscReal times)
+/* What may stay of gaps, or of slips, which `times` as much may; moved: against the wall, and at all; pressed: the gap
+ * that the largest pressure takes away. */
+static PetscReal allowed(const Contact *s, PetscInt change, PetscReal moved, PetscReal travelled, PetscReal pressed,
+                         PetscReal times)
 {
-  const PetscReal closed = CLOSED * s->length, still = STANDING * s->length, asked = s->share.asked;
+  const PetscReal closed = CLOSED * s->length, asked = s->share.asked;
+  const PetscReal still = PetscMax(ROUND_OFF * s->length, PetscMin(STANDING * s->length, MOVING * pressed));
   PetscReal most = closed;
   if (s->share.flows) most = PetscMax(closed, times * PetscMin(MOVED * moved, FLOWING * s->length));
   else if (!s->share.yields && change < tries(s) && !(s->share.moves && travelled == 0))
@@ -286,8 +300,8 @@ PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt chan
 {
   Contact *s = data;
   /* of gaps, and of slips of what does not rub; of what may be stiffened; motion; stalled_of; slips of what rubs;
-   * travel_of */
-  PetscReal worst[6] = {0}, of_all[6];
+   * travel_of; what pressures take away */
+  PetscReal worst[7] = {0}, of_all[7];
 
   PetscFunctionBeginUser;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
@@ -299,13 +313,14 @@ PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt chan
     worst[2] = PetscMax(worst[2], motion_of(c));
     worst[3] = PetscMax(worst[3], stalled_of(c, change, left));
     worst[5] = PetscMax(worst[5], travel_of(s, c, scene));
+    worst[6] = PetscMax(worst[6], PetscAbsReal(c->now.pressure) / c->law.penalty);
   }
-  PetscCall(MPIU_Allreduce(worst, of_all, 6, MPIU_REAL, MPIU_MAX, scene->grid->comm));
+  PetscCall(MPIU_Allreduce(worst, of_all, 7, MPIU_REAL, MPIU_MAX, scene->grid->comm));
   const PetscReal all = PetscMax(of_all[0], of_all[4]);
   const PetscBool slow = change > 0 && all > STALLS * s->worst, soft = of_all[1] > CLOSED * s->length;
   const PetscBool stalls = slow && !soft && of_all[3] <= ALLOWED * s->length;
-  const PetscBool stay = of_all[0] <= allowed(s, change, of_all[2], of_all[5], 1) &&
-                         of_all[4] <= allowed(s, change, of_all[2], of_all[5], SLIPS);
+  const PetscBool stay = of_all[0] <= allowed(s, change, of_all[2], of_all[5], of_all[6], 1) &&
+                         of_all[4] <= allowed(s, change, of_all[2], of_all[5], of_all[6], SLIPS);
   *again = !stay && change < MOST_CHANGES && !stalls;
   s->worst = all;
   if (s->adheres && change < TRIES) PetscCall(LendAgain(s, scene->grid, again));
