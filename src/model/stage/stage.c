@@ -138,8 +138,9 @@ static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool
   PetscCall(ReasonShare(m->comm, reason));
   if (reason[0] || diag_errors(diag) > errors) PetscFunctionReturn(0);
   if (m->method->restores_grid || m->grid->n_fields > 1) PetscCall(BodiesStand(m, from, diag));
-  for (PetscInt k = 0; next && k < m->c->n_interfaces; ++k)
-    if (meets_who_comes(m->c, from, m->c->interfaces + k)) PetscCall(InterfaceCloses(m, k));
+  for (int pass = 0; next && pass < 2; ++pass) /* what reaches over at one has another surface at the next one */
+    for (PetscInt k = 0; k < m->c->n_interfaces; ++k)
+      if (meets_who_comes(m->c, from, m->c->interfaces + k)) PetscCall(InterfaceCloses(m, k));
   walls = rigid_motion_before(m, from);
   PetscCall(ResetMotion(m, from, next));
   PetscCall(KeepAccount(m, before, walls, next));

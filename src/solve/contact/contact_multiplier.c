@@ -16,8 +16,8 @@
 #define MOVING 1e-3
 #define STANDING 1e-9
 #define ROUND_OFF 1e-16
-#define TRIES 6      /* changes in which that is sought: a step must not fail for it */
-#define BARELY 1e-16 /* of a cell: what touches at the start is pressed as by such a gap: less than any load */
+#define TRIES 6        /* changes in which that is sought: a step must not fail for it */
+#define BARELY 1e-16   /* of a cell: what touches at the start is pressed as by such a gap: less than any load */
 #define NO_FORCE 1e-10 /* likewise: what is pressed by no more may have been left by round-off */
 /* Where grains flow, that share of what the surface moves in the step, up to so much of a cell. */
 #define MOVED 3e-3
