@@ -10,7 +10,8 @@
 #define SLIVER 0.03 /* of a cell: and of what is thinner */
 #define CLOSES 0.1  /* of a cell: a wider gap is told of (stage/gaps.c) */
 #define HAIR 1e-4   /* of a cell: a gap within it is one of the digits in which places are written */
-/* surfaces that are fitted have other normals, for which they do not quite fit */
+/* surfaces that are fitted have other normals, for which they do not quite fit: what is left would be met again by what
+ * comes back there */
 #define FITTINGS 8
 #define FITS 1e-9        /* of a cell */
 #define MADE_TO_FIT 0.35 /* of the size of a point: a gap within it is one between polygons */
