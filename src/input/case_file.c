@@ -98,20 +98,9 @@ static void peek_kinematics(const YamlNode *root, SchemaReader *r)
   r->hoop = kinematics ? kinematics->hoop : PETSC_FALSE;
 }
 
-/* Has any material no change of volume at all? Then only pressures at nodes can bear one. */
-static PetscBool keeps_volume(const Case *c)
-{
-  for (PetscInt m = 0; m < c->n_materials; ++m)
-    for (PetscInt k = 0; k < c->materials[m].n_parameters; ++k)
-      if (!strcmp(c->materials[m].parameters[k].name, "poisson") && c->materials[m].parameters[k].value >= 0.5)
-        return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
 /* Could the points of each cell share its change of volume? The cells of a mesh are not known yet. */
 static PetscBool cells_share(const Case *c)
 {
-  if (keeps_volume(c)) return PETSC_FALSE;
   const PetscBool several = c->grid.cell == CELL_QUADRILATERAL || c->grid.cell == CELL_HEXAHEDRON;
   const Basis *basis = basis_find(c->basis.kind);
   return (PetscBool)(c->grid.kind == GRID_BOX && several && (c->basis.by_default || basis->nodes == BASIS_OF_CELLS));

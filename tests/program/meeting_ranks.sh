@@ -62,7 +62,8 @@ for method in fem gmm; do
     fail "$name: $(tail -n 1 ranks3/history.csv)"
 done
 
-# Squares of four triangles have nodes in their middle, which ranks on the other side of the joint must know, too.
+# Squares of four triangles have nodes in their middle, which ranks on the other side of the joint must know, too. What
+# round-off leaves of forces of 364 N is another on each processor: 4e-8 N at most.
 cat >crossed.yaml <<'END'
 kinematics: plane-strain
 method: fem
@@ -83,7 +84,7 @@ for method in fem mpm; do
   for ranks in 1 2 3; do
     expect "crossed, $method, $ranks" 0 on_ranks $ranks "$talus" run crossed.yaml --out crossed$ranks --force --quiet --set method=$method
     paste -d, crossed1/history.csv crossed$ranks/history.csv | awk -F, '
-      NR > 1 { n++; touch += $4 < -1; for (k = 3; k <= 5; ++k) bad += ($k - $(k + 5)) ^ 2 > 1e-16 }
+      NR > 1 { n++; touch += $4 < -1; for (k = 3; k <= 5; ++k) bad += ($k - $(k + 5)) ^ 2 > (1e-9 * (k > 3 ? 364 : 13)) ^ 2 }
       END { exit bad || n != 9 || touch < 1 || $3 < 1 }' || fail "$name: $(tail -n 1 crossed$ranks/history.csv)"
   done
 done

@@ -178,6 +178,53 @@ static void test_cover(void **state)
   }
 }
 
+/* Squares of a lattice along the axes, as far as they lie in a slab: from `low` to `high` along (-s, c), its ends far
+ * away. A point stands in the middle of what its square has of that. */
+static void cut_slab(Body *b, PetscReal angle, PetscReal low, PetscReal high, PetscReal shift, PetscReal size)
+{
+  enum { FINE = 20 };
+  const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle), fine = size / FINE;
+  b->surface.n = 0;
+  for (PetscReal x0 = shift - 1; x0 < 1; x0 += size)
+    for (PetscReal y0 = shift - 1; y0 < 1; y0 += size) {
+      PetscReal x = 0, y = 0;
+      int n = 0;
+      for (int k = 0; k < FINE * FINE; ++k) {
+        const PetscReal u = x0 + (0.5 + k % FINE) * fine, v = y0 + (0.5 + (PetscReal)(k / FINE)) * fine;
+        if (c * v - s * u < low || c * v - s * u > high) continue;
+        x += u, y += v, ++n;
+      }
+      if (n < FINE * FINE / 10) continue; /* slivers join others */
+      x /= n, y /= n;
+      add(b, x, y, size * PetscSqrtReal(n) / FINE);
+      SurfacePoint *p = b->point + b->surface.n - 1;
+      p->reach = p->first = PetscMin(0.5 * size, PetscMin(high - (c * y - s * x), c * y - s * x - low));
+    }
+  close_body(b);
+}
+
+/* A plane face that cuts cells is one whichever it cuts, and however deep in the body the points are that stand for it:
+ * whatever touches has its normal. */
+static void test_cut(void **state)
+{
+  static Body upper, lower;
+  SurfacePair pair;
+  (void)state;
+  for (int k = 0; k < 48; ++k) {
+    const PetscReal angle = 0.27 * k, c = PetscCosReal(angle), s = PetscSinReal(angle);
+    int met = 0;
+    cut_slab(&lower, angle, -0.4, 0.0025 * k, 0, 0.125);
+    cut_slab(&upper, angle, 0.0025 * k, 0.6, 0.021, 0.125);
+    for (const SurfacePoint *p = upper.point; p < upper.point + upper.surface.n; ++p) {
+      if (PetscAbsReal(p->x[0]) > 0.7 || PetscAbsReal(p->x[1]) > 0.7) continue;
+      if (!surface_meet(&upper.surface, p, &lower.surface, 0.25, &pair) || pair.gap - p->reach > 0.02) continue;
+      assert_true(PetscAbsReal(pair.normal[0] + s) < 1e-9 && PetscAbsReal(pair.normal[1] - c) < 1e-9);
+      met += PetscAbsReal(pair.gap - p->reach) < 1e-9 ? 1 : 0;
+    }
+    assert_true(met >= 6);
+  }
+}
+
 /* Of those that are near: all across one of three sides, at the distance that it has. */
 static void check_trough(const Body *a, const Body *b, PetscReal angle, PetscReal left, PetscReal below,
                          PetscReal right)
@@ -223,7 +270,7 @@ int main(void)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_planes), cmocka_unit_test(test_corner), cmocka_unit_test(test_circles),
     cmocka_unit_test(test_sunk),   cmocka_unit_test(test_edges),  cmocka_unit_test(test_cover),
-    cmocka_unit_test(test_trough),
+    cmocka_unit_test(test_trough), cmocka_unit_test(test_cut),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,9 +20,10 @@ typedef struct {
   PetscReal x[3], F[9];
   PetscReal first, corner[3]; /* POINT_REACH, POINT_CORNER, m */
   PetscReal reach;            /* what strain has made of the first on the whole, m */
-  PetscReal size;             /* side of a square of its part of the section, in space of a cube of its volume, m; of a
-                                 part that the body's surface cuts what one has that it does not: others stand so far off */
-  PetscReal own;              /* that of its part, cut or not, m */
+  /* side of a square of its part of the section, in space of a cube of its volume, m; of a part that the body's surface
+   * cuts what one has that it does not: others stand so far off */
+  PetscReal size;
+  PetscReal own;     /* that of its part, cut or not, m */
   PetscReal face[3]; /* of the body's surface, as a vector outwards, m2 (in the plane m); 0: it knows of none */
   PetscReal modulus, density; /* of its material, Pa, kg/m3 */
   PetscReal stiffer;          /* see ContactPoint */

@@ -7,14 +7,17 @@
 #include "solve/contact/surface/surface_hull.h"
 
 #define OUTSTANDING 0.05 /* of a point's size: how much farther out makes up for standing that far aside */
-#define STRAIGHT 1.4     /* of half of what a point was given: its middle is at most a sixth off that of its part */
 #define BESIDE \
   1.175 /* of a point's size: neighbours are within it (1.15 of Gauss points), those across a corner not (1.2) */
+#define FITS 0.01         /* of a point's size: what is so near touches */
+#define ALIKE 0.8         /* cosine: a curved side leans by less from one point to the next, another side by more */
 #define DEEPER 0.05       /* of a point's size: by more than that a side is none, as of points that stand in steps */
 #define IN_FRONT 0.25     /* of a point's size: what stands so far before a surface belongs to another side */
 #define BEHIND 0.375      /* of two points' size: so far aside one still stands before the other: 0.71 at an edge, */
 #define BEHIND_SPACE 0.42 /* and 0.82 at a corner of space */
 #define LOOKS 0.5         /* cosine between a surface and the way to the other body */
+#define SQUARE 1e-4       /* 1 - cosine: a surface looks along n */
+#define STRAIGHT 1.4      /* of half of what a point was given: its middle is at most a sixth off that of its part */
 #define A_LITTLE (1 + 1e-9)
 #define PASSES_SPACE 2 /* towards a side: of neighbours alone few see one of space whole */
 
@@ -51,10 +54,10 @@ static const SurfacePoint *nearest_within(const Surface *b, const PetscReal *x, 
 /* Of what p may meet; most that do are near. */
 static const SurfacePoint *nearest_of(const Surface *b, const SurfacePoint *p, PetscReal h, PetscReal *least)
 {
-  const PetscReal within = PetscMin(3 * h, A_LITTLE * (h + p->reach + b->reach + p->size));
+  const PetscReal within = PetscMin(3 * h, A_LITTLE * (h + p->reach + b->reach + p->own));
   const SurfacePoint *q = nearest_within(b, p->x, 0.5 * within, least);
   if (!q) q = nearest_within(b, p->x, within, least);
-  return q && *least <= h + p->reach + q->reach + p->size ? q : NULL;
+  return q && *least <= h + p->reach + q->reach + p->own ? q : NULL;
 }
 
 /* Offset of q from p, along n and across it. */
@@ -74,18 +77,20 @@ static PetscReal reach_along(PetscInt dim, const SurfacePoint *p, const PetscRea
   return contact_reach(p->F, back, p->first, p->corner, dim);
 }
 
-/* How wide the part of a point is across n: at least what it was given of the surface there is. */
-static PetscReal width(PetscInt dim, const SurfacePoint *p, const PetscReal n[3])
-{
-  const PetscReal face = PetscAbsReal(vector_dot(p->face, n));
-  return PetscMax(p->size, dim == 2 ? face : PetscSqrtReal(face));
-}
-
 /* Was p given surface that looks at what stands before it? */
 static PetscBool looks_out(const SurfacePoint *p, const PetscReal n[3])
 {
   const PetscReal along = -vector_dot(p->face, n);
   return (PetscBool)(along > 0 && PetscSqr(along) > PetscSqr(LOOKS) * vector_dot(p->face, p->face));
+}
+
+/* How wide the surface is that a point was given, if it looks along n as a plane side does; else 0: of a bent one
+ * nobody knows how far it is plane. */
+static PetscReal plane_width(PetscInt dim, const SurfacePoint *p, const PetscReal n[3])
+{
+  const PetscReal square = vector_dot(p->face, p->face), along = vector_dot(p->face, n);
+  if (along <= 0 || PetscSqr(along) < (1 - 2 * SQUARE) * square) return 0;
+  return dim == 2 ? along : PetscSqrtReal(along);
 }
 
 /* Does another point of its body stand before p? */
@@ -96,25 +101,22 @@ static PetscBool is_behind(const Part *a, const SurfacePoint *p, const PetscReal
   if (looks_out(p, n)) return PETSC_FALSE;
   for (PetscInt k = 0; k < a->n; ++k) {
     offset(p, a->point[k], n, &along, &across);
-    if (along > 0 && looks_out(a->point[k], n) && across < 0.5 * width(a->dim, a->point[k], n)) return PETSC_TRUE;
-    if (along > 0.5 * p->size && across < within * (p->size + a->point[k]->size)) return PETSC_TRUE;
+    if (along > 0.5 * p->own && across < within * (p->own + a->point[k]->own)) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
 
-/* Of what was given surface that looks at p, the one that p is most nearly straight before, if it is: that surface is
- * the body's there, wherever the middle of its part is, and whatever stands behind it. */
+/* Of what was given plane surface that looks at p, the one that p is most nearly straight before, if it is: that
+ * surface is the body's there, wherever the middle of its part is, and whatever stands behind it. */
 static const SurfacePoint *straight_before(const Part *b, const SurfacePoint *p, const PetscReal n[3])
 {
-  const PetscReal back[3] = {-n[0], -n[1], -n[2]};
   const SurfacePoint *best = NULL;
   PetscReal along, across, least = STRAIGHT;
   for (PetscInt k = 0; k < b->n; ++k) {
-    const SurfacePoint *q = b->point[k];
-    if (!looks_out(q, back)) continue;
-    offset(p, q, n, &along, &across);
-    const PetscReal share = across / (0.5 * width(b->dim, q, n));
-    if (share < least) least = share, best = q;
+    const PetscReal width = plane_width(b->dim, b->point[k], n);
+    if (width == 0) continue;
+    offset(p, b->point[k], n, &along, &across);
+    if (across < least * 0.5 * width) least = 2 * across / width, best = b->point[k];
   }
   return best;
 }
@@ -132,9 +134,9 @@ static PetscBool choose(const Part *b, const SurfacePoint *p, SurfacePair *pair)
   for (PetscInt k = 0; k < b->n; ++k) {
     const SurfacePoint *q = b->point[k];
     offset(p, q, pair->normal, &along, &across);
-    if (across > 0.5 * (width(b->dim, p, pair->normal) + width(b->dim, q, pair->normal))) continue;
+    if (across > 0.5 * (p->own + q->own)) continue;
     const PetscReal gap = along - reach_along(b->dim, q, pair->normal);
-    const PetscReal key = gap + OUTSTANDING * across * across / q->size;
+    const PetscReal key = gap + OUTSTANDING * across * across / q->own;
     if (key >= least) continue;
     least = key;
     pair->gap = gap;
@@ -143,29 +145,31 @@ static PetscBool choose(const Part *b, const SurfacePoint *p, SurfacePair *pair)
   return least < PETSC_MAX_REAL;
 }
 
-/* Of a part a point and its neighbours. */
+/* Of a part a point and its neighbours: by the size of the larger of both, as what a surface leaves of a cell is small
+ * beside a whole one, and would have none. */
 static void beside(const Part *part, const SurfacePoint *p, Part *beside)
 {
   part_begin(beside, part->dim);
-  for (PetscInt k = 0; k < part->n; ++k)
-    if (square(part->point[k]->x, p->x) <= PetscSqr(BESIDE * p->size)) part_add(beside, part->point[k]);
+  for (PetscInt k = 0; k < part->n; ++k) {
+    const SurfacePoint *q = part->point[k];
+    if (square(q->x, p->x) <= PetscSqr(BESIDE * PetscMax(p->own, q->own))) part_add(beside, q);
+  }
 }
 
-/* Does s stand before the surface of q, with its middle and its own surface? Parts that the surface cuts have their
- * middles at any depth below it. */
-static PetscBool is_before(PetscInt dim, const SurfacePoint *s, const SurfacePoint *q, const PetscReal n[3])
+/* How far out the surface that p stands for is along n, out of its body. */
+static PetscReal surface_along(const SurfacePoint *p, const PetscReal n[3], PetscInt dim)
 {
-  const PetscReal r[3] = {s->x[0] - q->x[0], s->x[1] - q->x[1], s->x[2] - q->x[2]}, ahead = vector_dot(r, n);
-  if (ahead <= IN_FRONT * q->size) return PETSC_FALSE;
-  return (PetscBool)(ahead + reach_along(dim, s, n) > reach_along(dim, q, n) + IN_FRONT * q->size);
+  return vector_dot(p->x, n) + reach_along(dim, p, n);
 }
 
-/* Of a part what does not stand before the surface of q. */
+/* Of a part what does not stand before the surface of q. Places of points tell nothing of that where the surface cuts
+ * cells: they are at any depth below it. */
 static PetscBool clear_front(const Part *part, const SurfacePoint *q, const PetscReal n[3], Part *clear)
 {
+  const PetscReal front = surface_along(q, n, part->dim) + IN_FRONT * q->own;
   part_begin(clear, part->dim);
   for (PetscInt k = 0; k < part->n; ++k)
-    if (!is_before(part->dim, part->point[k], q, n)) part_add(clear, part->point[k]);
+    if (surface_along(part->point[k], n, part->dim) <= front) part_add(clear, part->point[k]);
   return (PetscBool)(clear->n < part->n);
 }
 
@@ -181,7 +185,7 @@ typedef struct {
 static PetscBool take_side(const SurfacePoint *p, const Part *mine, const SurfacePoint *q, const Part *theirs,
                            const PetscReal whole[3], Way *way)
 {
-  const PetscReal deepest = 0.5 * (p->size + q->size);
+  const PetscReal deepest = 0.5 * (p->own + q->own);
   PetscReal back[3] = {-whole[0], -whole[1], -whole[2]};
   Part near, far;
   const PetscBool turns = clear_front(theirs, q, whole, &way->theirs);
@@ -210,6 +214,16 @@ static PetscBool meet_way(const SurfacePoint *p, const Part *mine, const Part *t
   return PETSC_TRUE;
 }
 
+/* Is the way that was found anew, with its gap, better than that between hulls? Not if a block would be deeper in it by
+ * that; and in the plane, where ways out are exact, not if what touches across a curved side would stand off. */
+static PetscBool is_side(PetscInt dim, const SurfacePoint *p, const SurfacePair *whole, PetscReal gap,
+                         const SurfacePair *side, PetscReal farther)
+{
+  const PetscBool touches = (PetscBool)(dim == 2 && PetscAbsReal(gap) <= FITS * p->own && farther > gap);
+  if (touches && vector_dot(whole->normal, side->normal) > ALIKE) return PETSC_FALSE;
+  return (PetscBool)(farther > PetscMin(gap, 0) - DEEPER * p->own);
+}
+
 PetscBool surface_meet(const Surface *a, const SurfacePoint *p, const Surface *b, PetscReal h, SurfacePair *pair)
 {
   Part mine, theirs;
@@ -222,10 +236,10 @@ PetscBool surface_meet(const Surface *a, const SurfacePoint *p, const Surface *b
   part_around(b, p->x, least + h, &theirs);
   for (int i = 0; i < 3 && least > 0; ++i) way.n[i] = (p->x[i] - q->x[i]) / least;
   PetscReal n[3] = {way.n[0], way.n[1], way.n[2]};
-  hull_face(&mine, &theirs, 0.5 * (p->size + q->size), n);
+  hull_face(&mine, &theirs, 0.5 * (p->own + q->own), n);
   PetscBool meets = meet_way(p, &mine, &theirs, n, pair, &gap);
   if (take_side(p, &mine, q, &theirs, n, &way) && meet_way(p, &mine, &way.theirs, way.n, &other, &farther))
-    if (!meets || farther > PetscMin(gap, 0) - DEEPER * p->size) *pair = other, meets = PETSC_TRUE;
+    if (!meets || is_side(a->dim, p, pair, gap, &other, farther)) *pair = other, meets = PETSC_TRUE;
   if (!meets) return PETSC_FALSE;
   pair->cover = surface_cover(a, p, b, pair);
   return pair->cover > 0;
