@@ -59,6 +59,26 @@ done
 kill -INT $! && wait $!
 says err.txt "'limit' is empty (nan) at the end: the search for it was not over"
 
+# A wall that sand pushes goes away: its force is against the displacement all the time, and falls to that of Rankine,
+# gamma H^2 K / 2 - 2 c H sqrt(K) = 48.71 kN. It was told as 0.
+cat >active.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: limit-load, limit: {raise: back, step: 0.02}}
+grid: {box: {min: [0, 0], max: [12, 4]}, size: 0.5}
+bodies: [{name: sand, shape: {box: {min: [0, 0], max: [12, 4]}}, material: m, k0: 0.5}]
+materials: {m: {law: mohr-coulomb, density: 2000, young: 1e8, poisson: 0.3, friction_angle: 30, cohesion: 1000}}
+boundary:
+  - {on: {y: 0}, fix: [y]}
+  - {on: {x: 12}, fix: [x]}
+  - {name: back, on: {x: 0}, displacement: {x: -0.1}}
+loads: {gravity: [0, -10]}
+measures: {limit: {limit_load: value}}
+END
+expect "active thrust" 0 "$talus" run active.yaml --out run --force
+awk -F, 'END { exit !($3 > -48.8e3 && $3 < -48.6e3) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
+says out.txt "by load = it holds" "N along the displacement of 'back'"
+
 # A smooth footing on sand, whose free surface bears nothing: cells at its edge open and close, and are settled in patches.
 # Exact is N_gamma = 7.85 (cases/footing-on-sand/bearing.py); squares of B/8 bear a sixth more, on any number of ranks.
 cat >sand.yaml <<'END'
