@@ -15,7 +15,6 @@
 #define IN_FRONT 0.25     /* of a point's size: what stands so far before a surface belongs to another side */
 #define BEHIND 0.375      /* of two points' size: so far aside one still stands before the other: 0.71 at an edge, */
 #define BEHIND_SPACE 0.42 /* and 0.82 at a corner of space */
-#define LOOKS 0.5         /* cosine between a surface and the way to the other body */
 #define SQUARE 1e-4       /* 1 - cosine: a surface looks along n */
 #define STRAIGHT 1.4      /* of half of what a point was given: its middle is at most a sixth off that of its part */
 #define A_LITTLE (1 + 1e-9)
@@ -77,13 +76,6 @@ static PetscReal reach_along(PetscInt dim, const SurfacePoint *p, const PetscRea
   return contact_reach(p->F, back, p->first, p->corner, dim);
 }
 
-/* Was p given surface that looks at what stands before it? */
-static PetscBool looks_out(const SurfacePoint *p, const PetscReal n[3])
-{
-  const PetscReal along = -vector_dot(p->face, n);
-  return (PetscBool)(along > 0 && PetscSqr(along) > PetscSqr(LOOKS) * vector_dot(p->face, p->face));
-}
-
 /* How wide the surface is that a point was given, if it looks along n as a plane side does; else 0: of a bent one
  * nobody knows how far it is plane. */
 static PetscReal plane_width(PetscInt dim, const SurfacePoint *p, const PetscReal n[3])
@@ -98,7 +90,6 @@ static PetscBool is_behind(const Part *a, const SurfacePoint *p, const PetscReal
 {
   const PetscReal within = a->dim == 2 ? BEHIND : BEHIND_SPACE;
   PetscReal along, across;
-  if (looks_out(p, n)) return PETSC_FALSE;
   for (PetscInt k = 0; k < a->n; ++k) {
     offset(p, a->point[k], n, &along, &across);
     if (along > 0.5 * p->own && across < within * (p->own + a->point[k]->own)) return PETSC_TRUE;
