@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/process/blas_kernels.h"
 #include "base/process/memory.h"
 #include "base/process/mpi_end.h"
 #include "base/process/start.h"
@@ -184,6 +185,7 @@ static int run_program(int argc, char **argv, char **own, char **petsc)
 
 int main(int argc, char **argv)
 {
+  blas_know_processor();
   if (mpi_begin(&argc, &argv)) return CLI_GAVE_UP;
   char **own = calloc((size_t)argc + 1, sizeof(char *)), **petsc = calloc((size_t)argc + 1, sizeof(char *));
   const int exit_code = own && petsc ? run_program(argc, argv, own, petsc) : CLI_GAVE_UP;

@@ -1,3 +1,4 @@
+talus_test(base/test_blas)
 talus_test(base/test_compiler)
 talus_test(base/test_diag RANKS 1 2 3)
 talus_test(base/test_eigen)

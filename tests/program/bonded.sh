@@ -51,7 +51,7 @@ output: {fields: [displacement], every: end}
 END
 for law in bonded frictionless; do
   for order in 'ring, core' 'core, ring'; do
-    for grid in 'max: [1, 1]}, size: 0.05' 'max: [1.12, 1.12]}, size: 0.07' 'max: [1, 1]}, size: 0.1'; do
+    for grid in 'max: [1.12, 1.12]}, size: 0.07' 'max: [1, 1]}, size: 0.1'; do
       expect "a little pressure, $law, $order, $grid" 0 "$talus" run fits.yaml --out fits --force --set "interfaces=[{name: i, between: [$order], contact: $law}]" --set "grid={box: {min: [0, 0], $grid}"
       awk -F, 'END { exit !($3 < -9.9 && $3 > -10.1) }' fits/history.csv || fail "$name: $(tail -n 1 fits/history.csv)"
     done

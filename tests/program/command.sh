@@ -161,4 +161,9 @@ env -u OMPI_MCA_ess_singleton_isolated -u OMPI_MCA_pml -u OMPI_MCA_btl OMPI_MCA_
   "$talus" run case.yaml --out alone --quiet 2>err.txt >out.txt || fail "$name: it does not run"
 [ -z "$(ls for_mpi)" ] || fail "$name: a folder of MPI's is left"
 
+# A processor that is newer than OpenBLAS has not the kernels of one of 2004.
+name="kernels of OpenBLAS"
+OPENBLAS_VERBOSE=2 "$talus" --version 2>&1 | grep '^Core:' | tail -n 1 >core.txt
+if grep -q '^flags.* avx2' /proc/cpuinfo; then lacks core.txt "Prescott"; fi
+
 finish
