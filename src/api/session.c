@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include "api/api.h"
 #include "base/process/start.h"
-#include "base/process/threads.h"
+#include "base/process/blas.h"
 #include "case/fields.h"
 #include "talus_version.h"
 

@@ -6,11 +6,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/process/blas_kernels.h"
+#include "base/process/blas.h"
 #include "base/process/memory.h"
 #include "base/process/mpi_end.h"
 #include "base/process/start.h"
-#include "base/process/threads.h"
 #include "cli/cli.h"
 
 const CliCommand cli_commands[] = {

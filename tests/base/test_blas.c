@@ -1,5 +1,5 @@
 /* Kernels of OpenBLAS that fit the processor: chosen, and right. */
-#include "base/process/blas_kernels.h"
+#include "base/process/blas.h"
 #include <dlfcn.h>
 #include <setjmp.h>
 #include <stdarg.h>

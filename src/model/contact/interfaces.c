@@ -231,14 +231,20 @@ static PetscErrorCode WarnOfStrangers(const Model *m, const SurfaceInput *in, co
   PetscFunctionReturn(0);
 }
 
+/* What surfaces are gathered from; nodes are not wanted. */
+static SurfaceInput surface_input(const Model *m)
+{
+  return (SurfaceInput){.comm = m->comm,
+                        .kinematics = m->c->kinematics,
+                        .grid = m->grid,
+                        .points = m->points,
+                        .materials = m->materials,
+                        .bodies = m->c->bodies};
+}
+
 PetscErrorCode InterfacesStart(Model *m, Diag *diag)
 {
-  const SurfaceInput in = {.comm = m->comm,
-                           .kinematics = m->c->kinematics,
-                           .grid = m->grid,
-                           .points = m->points,
-                           .materials = m->materials,
-                           .bodies = m->c->bodies};
+  const SurfaceInput in = surface_input(m);
   PetscReal *bounds;
   PetscMPIInt rank;
   int *share;
@@ -263,8 +269,7 @@ PetscErrorCode InterfacesStart(Model *m, Diag *diag)
 
 PetscErrorCode InterfacesSettle(Model *m)
 {
-  const SurfaceInput in = {
-    .comm = m->comm, .kinematics = m->c->kinematics, .grid = m->grid, .points = m->points, .materials = m->materials};
+  const SurfaceInput in = surface_input(m);
   PetscReal *bounds;
   Surface body[2];
 
@@ -283,12 +288,7 @@ PetscErrorCode InterfacesSettle(Model *m)
 
 PetscErrorCode InterfaceCloses(Model *m, PetscInt k)
 {
-  const SurfaceInput in = {.comm = m->comm,
-                           .kinematics = m->c->kinematics,
-                           .grid = m->grid,
-                           .points = m->points,
-                           .materials = m->materials,
-                           .bodies = m->c->bodies};
+  const SurfaceInput in = surface_input(m);
   const PetscReal hair = CLOSES * m->grid->smallest;
   PetscReal *bounds;
   PetscMPIInt rank;

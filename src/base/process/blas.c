@@ -1,4 +1,4 @@
-#include "base/process/blas_kernels.h"
+#include "base/process/blas.h"
 #include <dlfcn.h>
 #include <stdlib.h>
 #include <strings.h>
@@ -33,4 +33,12 @@ void blas_know_processor(void)
   setenv(CHOICE, kernels, 1);
   quit();
   init();
+}
+
+void threads_one_per_rank(void)
+{
+  void (*set)(int) = NULL;
+  if (getenv("OPENBLAS_NUM_THREADS")) return;
+  *(void **)&set = dlsym(RTLD_DEFAULT, "openblas_set_num_threads");
+  if (set) set(1);
 }
