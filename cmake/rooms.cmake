@@ -101,6 +101,8 @@ endif()
 # talus_test(room/test_name [RANKS 1 2 3] [TIMEOUT s]): builds tests/room/test_name.c and runs it on the ranks given. On
 # one rank it carries the label `fast` unless TALUS_SLOW_TESTS (tests/CMakeLists.txt) names it.
 add_custom_target(fast_tests)
+add_library(talus_test_kernels OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/tests/support/kernels.c)
+target_link_libraries(talus_test_kernels PRIVATE talus_flags)
 function(talus_test path)
   cmake_parse_arguments(arg "" "TIMEOUT" "RANKS" ${ARGN})
   get_filename_component(room ${path} DIRECTORY)
@@ -138,6 +140,7 @@ function(talus_test path)
   talus_yields(${target})
   # What a test itself does takes longer to compile than to run; but those of the ground floor try what its headers inline.
   if(NOT room STREQUAL "base")
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:talus_test_kernels>)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
     talus_precompile(tests ${target})
   endif()

@@ -24,7 +24,7 @@ END
 cat >case.yaml <<'END'
 kinematics: plane-strain
 method: fem
-analysis: {type: dynamic, step: 5e-3, end: 0.3, bossak: -0.3}
+analysis: {type: dynamic, step: 5e-3, end: 0.15, bossak: -0.3}
 grid: {mesh: blocks.geo}
 bodies: [{name: low, region: low, points_per_cell: 3, material: rubber}, {name: top, region: top, points_per_cell: 3, material: rubber}]
 materials: {rubber: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
@@ -38,24 +38,26 @@ measures:
   friction: {energy: friction}
 linear: direct # several ranks would iterate, and what may be left of gaps would differ
 output: {fields: [displacement], every: end}
-checkpoint: {steps: 20, keep: 5}
+checkpoint: {steps: 10, keep: 5}
 END
 
-# 320 kg, a = g (sin 30 - 0.2 cos 30) from rest, but for the first steps in which it hops; alike on all ranks.
+# 320 kg: gravity's impulse along the slope less 0.2 times that of the joint; alike on all ranks. It hops at first, so
+# that the joint has given less than the weight has.
 for method in fem gmm; do
   for ranks in 1 2 3; do
     expect "$method slides, $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out ranks$ranks --force --quiet \
       --set method=$method
-    awk -F, 'END { exit !(($3 / (320 * 3.205858 * 0.3) - 1) ^ 2 < 0.01 ^ 2) }' ranks$ranks/history.csv ||
+    awk -F, 'NR > 1 { along = $3; given += 5e-3 * $4 }
+      END { exit !((along / (320 * 4.905 * 0.15 - 0.2 * given) - 1) ^ 2 < 0.01 ^ 2 && given > 0.9 * 320 * 8.495709 * 0.15) }' ranks$ranks/history.csv ||
       fail "$name: $(tail -n 1 ranks$ranks/history.csv)"
     paste -d, ranks1/history.csv ranks$ranks/history.csv | awk -F, '
       function size(x) { return x < 0 ? -x : x }
       NR > 1 { n++; for (k = 3; k <= 6; ++k) { if (size($k) > most[k]) most[k] = size($k); if (size($k - $(k + 6)) > off[k]) off[k] = size($k - $(k + 6)) } }
-      END { for (k = 3; k <= 6; ++k) if (off[k] > 1e-8 * most[k]) { print k, off[k], most[k]; bad = 1 } exit bad || n < 50 }' ||
+      END { for (k = 3; k <= 6; ++k) if (off[k] > 1e-8 * most[k]) { print k, off[k], most[k]; bad = 1 } exit bad || n < 25 }' ||
       fail "$name: not as on one rank"
   done
   end=$(tail -n 1 ranks1/history.csv)
-  rm -f ranks3/checkpoint*60*
+  rm -f ranks3/checkpoint*30*
   expect "$method goes on" 0 on_ranks 2 "$talus" run --resume ranks3 --quiet
   printf '%s\n%s\n' "$end" "$(tail -n 1 ranks3/history.csv)" |
     awk -F, '{ last = along; along = $3 } END { exit !((along / last - 1) ^ 2 < 1e-6 ^ 2) }' ||
