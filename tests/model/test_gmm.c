@@ -290,6 +290,30 @@ static void test_obstacles(void **state)
   }
 }
 
+/* A block is pushed along a side that is held across itself: what nodes of that side are before it have next to no mass
+ * when it comes to them, and must not be flung off. It made twenty times its energy within 30 steps. */
+static void test_along(void **state)
+{
+  Bench b;
+  Energies e;
+  (void)state;
+  gmm_init(&b, &usual_lme, CELL_QUADRILATERAL, 0);
+  bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){1.5, 5, 1}, 0.25);
+  bench_box(&b, 0, (PetscReal[]){0, 3.5, 0}, (PetscReal[]){1, 4.5, 1});
+  b.constants[0].value = 1e7;
+  bench_motion(&b, 0, 0, MOTION_FIXED, 1);
+  bench_traction(&b, 1, 4.5, "body", 0, -1e4, 0);
+  bench_dynamic(&b, 0.4, 0.01);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (int step = 0; step < 40; ++step) CHECK(model_step(m, 0.01).cuts == 0, "step %d was halved", step);
+  CALL(ModelEnergies(m, &e));
+  PetscPrintf(PETSC_COMM_WORLD, "along a side: %.6g kg m/s, %.3g J elastic, %.3g in transfer of %.6g\n",
+              (double)model_sum(m, "momentum", 1), (double)e.elastic, (double)e.transfer, (double)e.external);
+  CHECK_CLOSE(model_sum(m, "momentum", 1), -1e4 * 0.4, 1e-6);
+  CHECK(e.elastic < 1e-2 * e.external && PetscAbsReal(e.transfer) < 1e-3 * e.external, "it shakes");
+  CALL(ModelDestroy(&m));
+}
+
 /* Spacings between the nearest two nodes that a rank knows. */
 static PetscReal nearest_nodes(const Model *m)
 {
@@ -529,7 +553,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_patch),        cmocka_unit_test(test_hang),    cmocka_unit_test(test_options),
     cmocka_unit_test(test_fly),          cmocka_unit_test(test_contact), cmocka_unit_test(test_ranks),
     cmocka_unit_test(test_obstacles),    cmocka_unit_test(test_solvers), cmocka_unit_test(test_heap),
-    cmocka_unit_test(test_given_stress), cmocka_unit_test(test_beyond),
+    cmocka_unit_test(test_given_stress), cmocka_unit_test(test_beyond),  cmocka_unit_test(test_along),
   };
   return run_model_tests(argc, argv, tests);
 }

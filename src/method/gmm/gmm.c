@@ -35,8 +35,9 @@ static PetscReal starved(const Discretisation *s, PetscInt node, PetscReal densi
   const PetscInt dim = s->grid->dim;
   const PetscReal h = s->grid->cloud->spacing, corner = dim == 3 ? h * h * h / 16 : h * h / 8;
   const PetscReal round = kinematics_weight(s->c->kinematics, PetscMax(s->grid->x[node * dim], h / 3));
-  /* what it would do without mass does not matter */
-  if (is_held(s, node) && !boundary_slides_on_axis(s->boundary, node)) return 0;
+  PetscInt held = 0;
+  for (PetscInt d = 0; d < dim; ++d) held += s->boundary->fixed[node * dim + d] != 0;
+  if (held == dim) return 0; /* what it would do without mass does not matter */
   return PetscMax(0, 1 - PetscMax(0, s->nodes->mass[node]) / (density * corner * round));
 }
 
