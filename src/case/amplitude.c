@@ -13,6 +13,7 @@ PetscReal amplitude_value(const Amplitude *a, PetscReal t, PetscReal fallback)
     if (t < a->time[middle]) high = middle;
     else low = middle;
   }
+  if (a->value[low] == a->value[high]) return a->value[low]; /* what rounding would not leave as it is */
   const PetscReal s = (t - a->time[low]) / (a->time[high] - a->time[low]);
   return (1 - s) * a->value[low] + s * a->value[high];
 }

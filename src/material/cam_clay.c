@@ -216,21 +216,36 @@ static PetscReal energy(const PetscReal *m, const PetscReal *state)
   return m[CC_KAPPA] * pressure(m, -trace) + m[CC_MU] * norm2;
 }
 
+/* b^e under the stress tau, and its principal deviator; p > 0. */
+static void clay_elastic(const PetscReal *m, const PetscReal tau[6], PetscReal p, PetscReal s[3], PetscReal *b)
+{
+  PetscReal stretch2[3], v[9], basis[36];
+  sym_eigen(tau, s, v);
+  principal_basis(v, basis);
+  for (int a = 0; a < 3; ++a) {
+    s[a] += p;
+    stretch2[a] = exp(s[a] / m[CC_MU] - 2.0 / 3.0 * m[CC_KAPPA] * log(p / REFERENCE));
+  }
+  principal_tensor(stretch2, basis, b);
+}
+
+static PetscBool bear(const PetscReal *m, const PetscReal tau[6], PetscReal *state)
+{
+  const PetscReal p = -(tau[0] + tau[1] + tau[2]) / 3.0;
+  PetscReal s[3];
+  if (p > 0.0) clay_elastic(m, tau, p, s, state);
+  return (PetscBool)(p > 0.0);
+}
+
 /* The body is as large as it is: tau = sigma, J = 1. p_c by ocr that of the ellipse through the
  * stress, times it. PETSC_FALSE without pressure, or outside the yield surface. */
 static PetscBool initial_stress(const PetscReal *m, const PetscReal sigma[6], PetscReal *state)
 {
   const PetscReal p = -(sigma[0] + sigma[1] + sigma[2]) / 3.0;
-  PetscReal stretch2[3], tau[3], v[9], basis[36], norm2 = 0.0;
+  PetscReal s[3], norm2 = 0.0;
   if (!(p > 0.0)) return PETSC_FALSE;
-  sym_eigen(sigma, tau, v);
-  principal_basis(v, basis);
-  for (int a = 0; a < 3; ++a) {
-    const PetscReal s = tau[a] + p;
-    norm2 += s * s;
-    stretch2[a] = exp(s / m[CC_MU] - 2.0 / 3.0 * m[CC_KAPPA] * log(p / REFERENCE));
-  }
-  principal_tensor(stretch2, basis, state);
+  clay_elastic(m, sigma, p, s, state);
+  for (int a = 0; a < 3; ++a) norm2 += s[a] * s[a];
   const PetscReal through = p + 1.5 * norm2 / (m[CC_M2] * p);
   state[6 + PC] = isnan(m[CC_PC]) ? m[CC_OCR] * through : m[CC_PC];
   state[6 + FLOW] = 0.0;
@@ -309,6 +324,7 @@ const Law law_modified_cam_clay = {
   .march_space = cam_clay_march_space,
   .energy = energy,
   .initial_stress = initial_stress,
+  .bear = bear,
   .prepare = prepare,
   .check = check,
 };

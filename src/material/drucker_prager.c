@@ -113,6 +113,11 @@ static PetscBool initial_stress(const PetscReal *q, const PetscReal sigma[6], Pe
   return R + q[DP_ETA] * p - q[DP_XI_C] <= noise && p - q[DP_CAP] <= noise;
 }
 
+static PetscBool bear(const PetscReal *q, const PetscReal tau[6], PetscReal *state)
+{
+  return hencky_bear(lame(q), q[DP_MU], tau, state);
+}
+
 /* Without friction, dilatancy and cut-off (von Mises) the flow neither feels the pressure nor
  * changes the volume. */
 static VolumeLaw volume_law(const PetscReal *q)
@@ -200,6 +205,7 @@ const Law law_drucker_prager = {
   .energy = energy,
   .energies = energies,
   .initial_stress = initial_stress,
+  .bear = bear,
   .volume = volume,
   .volume_law = volume_law,
   .scale = scale,

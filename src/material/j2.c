@@ -143,6 +143,14 @@ static PetscBool initial_stress(const PetscReal *parameters, const PetscReal sig
   return shape_from_stress(mu, J, sigma, state);
 }
 
+/* The determinant of bbar, which flow has changed, stays. */
+static PetscBool bear(const PetscReal *parameters, const PetscReal tau[6], PetscReal *state)
+{
+  const PetscReal mean = (tau[0] + tau[1] + tau[2]) / 3.0;
+  state[6] = volume_from_kirchhoff(split_volume(parameters), parameters[SPLIT_BULK], mean, state[6]);
+  return state[6] > 0.0 && shape_of_det(sym_det(state), parameters[SPLIT_SHEAR], 1.0, tau, state);
+}
+
 static void prepare_linear(const Elasticity *elastic, const PetscReal *given, PetscReal *packed)
 {
   split_prepare(VOLUME_LINEAR, elastic, packed);
@@ -182,11 +190,11 @@ static const LawField fields[] = {
   {.name = NULL},
 };
 
-#define J2(...)                                                                                             \
-  {                                                                                                         \
-    .parameters = parameters, .fields = fields, .n_state = N_STATE, .yields = PETSC_TRUE, .update = update, \
-    .energy = energy, .initial_stress = initial_stress, .volume = volume, .volume_law = split_volume,       \
-    .of_stress = "volume_ratio", .reduce = reduce, __VA_ARGS__                                              \
+#define J2(...)                                                                                                     \
+  {                                                                                                                 \
+    .parameters = parameters, .fields = fields, .n_state = N_STATE, .yields = PETSC_TRUE, .update = update,         \
+    .energy = energy, .initial_stress = initial_stress, .bear = bear, .volume = volume, .volume_law = split_volume, \
+    .reduce = reduce, __VA_ARGS__                                                                                   \
   }
 
 const Law law_j2 = J2(.name = "j2", .prepare = prepare_linear,

@@ -97,6 +97,9 @@ typedef struct Law {
   /* State that carries the Cauchy stress sigma (6) with no shear history; PETSC_FALSE if there is
    * none. */
   PetscBool (*initial_stress)(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *state);
+  /* Let the elastic part of a state bear the Kirchhoff stress tau (6), whatever the strength: its history stays.
+   * PETSC_FALSE: no elastic strain does. NULL: not known. */
+  PetscBool (*bear)(const PetscReal *parameters, const PetscReal tau[6], PetscReal *state);
   /* Bulk and shear modulus that stand for it, of a law whose own parameters say how stiff it is:
    * it takes none of the elastic constants. NULL: two of them belong to it. */
   void (*elastic)(const PetscReal *given, PetscReal bulk_and_shear[2]);
@@ -129,8 +132,6 @@ typedef struct Law {
   /* Tell packed parameters the time at the start of a step and its length, s; dt = 0 stands for no step, in
    * which nothing may flow. NULL: the law does not know of time. */
   void (*step)(PetscReal time, PetscReal dt, PetscReal *packed);
-  /* A stored number that the stress decides, by its name: no history that stays when constants change. NULL: none. */
-  const char *of_stress;
   /* Does stress depend on the rate of strain? Statics have no rate: a step is endless there, dt = PETSC_INFINITY. */
   PetscBool rate;
 } Law;

@@ -132,6 +132,11 @@ static PetscBool initial_stress(const PetscReal *q, const PetscReal sigma[6], Pe
   return R + q[MU_STATIC] * p <= noise && p <= noise;
 }
 
+static PetscBool bear(const PetscReal *q, const PetscReal tau[6], PetscReal *state)
+{
+  return hencky_bear(lame(q), q[MU_SHEAR], tau, state);
+}
+
 static VolumeLaw volume_law(const PetscReal *q)
 {
   (void)q;
@@ -201,6 +206,7 @@ const Law law_mu_i = {
   .energy = energy,
   .energies = energies,
   .initial_stress = initial_stress,
+  .bear = bear,
   .volume = volume,
   .volume_law = volume_law,
   .scale = scale,

@@ -84,52 +84,71 @@ static PetscReal energy(const PetscReal *parameters, const PetscReal *b)
          0.5 * parameters[MU] * (b[0] + b[1] + b[2] - 3.0);
 }
 
-/* b = I + (J sigma - lambda ln J I) / mu. */
-static void b_of_volume(const PetscReal *parameters, const PetscReal sigma[6], PetscReal log_J, PetscReal *b)
+/* A stress whose b is looked for: Cauchy's grows to tau with J, Kirchhoff's is tau. */
+typedef struct {
+  const PetscReal *stress;
+  PetscBool cauchy;
+} Aim;
+
+static PetscReal growth(const Aim *aim, PetscReal log_J) { return aim->cauchy ? exp(log_J) : 1.0; }
+
+/* b = I + (tau - lambda ln J I) / mu. */
+static void b_of_volume(const PetscReal *parameters, const Aim *aim, PetscReal log_J, PetscReal *b)
 {
-  const PetscReal J = exp(log_J), lambda = parameters[LAMBDA], mu = parameters[MU];
-  for (int k = 0; k < 6; ++k) b[k] = J * sigma[k] / mu;
+  const PetscReal J = growth(aim, log_J), lambda = parameters[LAMBDA], mu = parameters[MU];
+  for (int k = 0; k < 6; ++k) b[k] = J * aim->stress[k] / mu;
   for (int k = 0; k < 3; ++k) b[k] += 1.0 - lambda * log_J / mu;
 }
 
 /* Residual ln det b - 2 ln J and its slope in ln J; PETSC_FALSE where b is not positive
  * definite. */
-static PetscBool volume_residual(const PetscReal *parameters, const PetscReal sigma[6], PetscReal log_J,
-                                 PetscReal *residual, PetscReal *slope)
+static PetscBool volume_residual(const PetscReal *parameters, const Aim *aim, PetscReal log_J, PetscReal *residual,
+                                 PetscReal *slope)
 {
   PetscReal b[6], full[9], inverse[9], slope_b[9], stress[9];
-  b_of_volume(parameters, sigma, log_J, b);
+  b_of_volume(parameters, aim, log_J, b);
   sym_to_full(b, full);
-  const PetscReal det = tensor_inverse(full, inverse);
+  const PetscReal det = tensor_inverse(full, inverse), J_slope = aim->cauchy ? exp(log_J) : 0.0;
   if (!(b[0] > 0.0 && b[0] * b[1] - b[3] * b[3] > 0.0 && det > 0.0)) return PETSC_FALSE;
-  sym_to_full(sigma, stress);
-  for (int k = 0; k < 9; ++k) slope_b[k] = exp(log_J) * stress[k] / parameters[MU];
+  sym_to_full(aim->stress, stress);
+  for (int k = 0; k < 9; ++k) slope_b[k] = J_slope * stress[k] / parameters[MU];
   for (int k = 0; k < 9; k += 4) slope_b[k] -= parameters[LAMBDA] / parameters[MU];
   *residual = log(det) - 2.0 * log_J;
   *slope = -2.0;
   for (int k = 0; k < 9; ++k) *slope += inverse[k] * slope_b[k];
-  /* a rising residual: past the limit load in tension */
-  return isfinite(*residual) && *slope < 0.0;
+  /* a rising residual: past the limit load in tension, where a state may be, but none that is looked for */
+  return isfinite(*residual) && (*slope < 0.0 || !aim->cauchy);
 }
 
-/* The volume whose b carries the stress: Newton in ln J from the stress-free state (a stress so
- * large that b is indefinite there: from a smaller volume), steps halved back into b > 0. */
-static PetscBool initial_stress(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *b)
+/* The volume whose b carries the stress: Newton in ln J from that of a state (a stress so large that b
+ * is indefinite there: from a smaller volume), steps halved back into b > 0. */
+static PetscBool b_of_stress(const PetscReal *parameters, const Aim *aim, PetscReal log_J, PetscReal *b)
 {
-  PetscReal log_J = 0.0, residual, slope;
-  while (!volume_residual(parameters, sigma, log_J, &residual, &slope))
-    if ((log_J = 1.5 * log_J - 0.05) < -50.0) return PETSC_FALSE;
+  PetscReal residual, slope;
+  while (!volume_residual(parameters, aim, log_J, &residual, &slope))
+    if (!((log_J = log_J > 0.0 ? 0.0 : 1.5 * log_J - 0.05) > -50.0)) return PETSC_FALSE;
   for (int iteration = 0; iteration < 100; ++iteration) {
     const PetscReal step = -residual / slope;
     PetscReal damping = 1.0;
-    while (!volume_residual(parameters, sigma, log_J + damping * step, &residual, &slope))
+    while (!volume_residual(parameters, aim, log_J + damping * step, &residual, &slope))
       if ((damping *= 0.5) < 1e-6) return PETSC_FALSE;
     log_J += damping * step;
     if (fabs(step) <= 4.0 * PETSC_MACHINE_EPSILON * (1.0 + fabs(log_J))) break;
   }
-  if (!(fabs(residual) <= 1e-12)) return PETSC_FALSE;
-  b_of_volume(parameters, sigma, log_J, b);
+  const PetscReal cancels = fabs(parameters[LAMBDA] * log_J / parameters[MU]); /* in b, which is 1 or so */
+  if (!(fabs(residual) <= 1e-12 * (1.0 + cancels))) return PETSC_FALSE;
+  b_of_volume(parameters, aim, log_J, b);
   return PETSC_TRUE;
+}
+
+static PetscBool initial_stress(const PetscReal *parameters, const PetscReal sigma[6], PetscReal *b)
+{
+  return b_of_stress(parameters, &(Aim){sigma, PETSC_TRUE}, 0.0, b); /* from none */
+}
+
+static PetscBool bear(const PetscReal *parameters, const PetscReal tau[6], PetscReal *b)
+{
+  return b_of_stress(parameters, &(Aim){tau, PETSC_FALSE}, 0.5 * log(sym_det(b)), b);
 }
 
 static void volume(PetscInt n, const PetscReal *state, PetscReal *J) { volume_of_b(n, 6, state, J); }
@@ -164,6 +183,7 @@ const Law law_neo_hookean = {
   .march_space = neo_hookean_march_space,
   .energy = energy,
   .initial_stress = initial_stress,
+  .bear = bear,
   .volume = volume,
   .volume_law = volume_law,
   .scale = scale,

@@ -81,6 +81,15 @@ static PetscBool initial_stress(const PetscReal *parameters, const PetscReal sig
   return PETSC_TRUE;
 }
 
+static PetscBool bear(const PetscReal *parameters, const PetscReal tau[6], PetscReal *b)
+{
+  const PetscReal q = (tau[0] + tau[1] + tau[2]) / 3.0;
+  const PetscReal J = volume_from_kirchhoff(split_volume(parameters), parameters[SPLIT_BULK], q, sqrt(sym_det(b)));
+  if (!(J > 0.0) || !shape_from_stress(parameters[SPLIT_SHEAR], 1.0, tau, b)) return PETSC_FALSE;
+  for (int k = 0; k < 6; ++k) b[k] *= cbrt(J * J);
+  return PETSC_TRUE;
+}
+
 static void prepare_linear(const Elasticity *elastic, const PetscReal *given, PetscReal *packed)
 {
   (void)given;
@@ -99,10 +108,11 @@ static const LawParameter parameters_none[] = {{.name = NULL}};
 static const LawField fields[] = {{"elastic_strain", "", "elastic left Cauchy-Green tensor b", 6, {1, 1, 1, 0, 0, 0}},
                                   {.name = NULL}};
 
-#define NEO_HOOKEAN_SPLIT(...)                                                                                    \
-  {                                                                                                               \
-    .parameters = parameters_none, .fields = fields, .n_state = 6, .symmetric = PETSC_TRUE, .update = update,     \
-    .energy = energy, .initial_stress = initial_stress, .volume = volume, .volume_law = split_volume, __VA_ARGS__ \
+#define NEO_HOOKEAN_SPLIT(...)                                                                                      \
+  {                                                                                                                 \
+    .parameters = parameters_none, .fields = fields, .n_state = 6, .symmetric = PETSC_TRUE, .update = update,       \
+    .energy = energy, .initial_stress = initial_stress, .bear = bear, .volume = volume, .volume_law = split_volume, \
+    __VA_ARGS__                                                                                                     \
   }
 
 const Law law_neo_hookean_split = NEO_HOOKEAN_SPLIT(.name = "neo-hookean-split", .prepare = prepare_linear,

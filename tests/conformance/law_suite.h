@@ -9,6 +9,7 @@
 #include <string.h>
 #include <cmocka.h>
 #include "base/math/tensor.h"
+#include "material/elasticity.h"
 #include "material/pressure.h"
 #include "random.h"
 
@@ -699,6 +700,57 @@ static inline void law_suite_initial_stress(LawSuite *suite)
   }
 }
 
+/* The law's parameters with other moduli, if they are not its own. */
+static inline void law_suite_other(const LawSuite *suite, PetscReal softer, PetscReal rounder, PetscReal *parameters)
+{
+  PetscReal value[ELASTIC_CONSTANTS] = {0};
+  Elasticity other = suite->material.elastic;
+  const int bulk = elastic_index("bulk"), shear = elastic_index("shear");
+  value[bulk] = rounder * other.bulk;
+  value[shear] = softer * other.shear;
+  memcpy(parameters, suite->material.parameters, sizeof suite->material.parameters);
+  if (suite->law->elastic) return;
+  assert_true(elasticity_from_two(1u << bulk | 1u << shear, value, &other));
+  suite->law->prepare(&other, suite->material.given, parameters);
+  if (suite->law->rate) suite->law->step(0, 0, parameters); /* nothing flows */
+}
+
+/* A state that has flowed bears its stress with other moduli, too, at rest, and is what it was with its own again. Where
+ * shape and volume act on each other, or with p = K (J - 1), Kirchhoff stresses have a least value: few are near it. */
+static inline void law_suite_bear(LawSuite *suite)
+{
+  const Law *law = suite->law;
+  static const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  PetscInt refused = 0;
+  if (!law->bear) return;
+  for (int s = 0; s < 1000; ++s) {
+    LawPoint p = {0};
+    PetscReal q[LAW_MAX_PARAMETERS], other[LAW_MAX_STATE], after[LAW_MAX_STATE], tau[6];
+    law_suite_random_point(suite, &p);
+    const PetscReal tolerance = 1e-10 * (law_suite_modulus(suite, &p) + law_suite_largest(6, p.tau));
+    const PetscReal most = suite->test->hyperelastic ? 0.01 : 0.1;
+    const PetscReal shear = random_real(&suite->random, 1 - most, 1 + most),
+                    bulk = random_real(&suite->random, 1 - most, 1 + most);
+    law_suite_other(suite, shear, suite->test->hyperelastic ? shear : bulk, q);
+    memcpy(other, p.state, sizeof other);
+    if (!law->bear(q, p.tau, other)) {
+      ++refused;
+      continue;
+    }
+    assert_int_equal(law->update(q, 1, identity, other, after, tau, NULL), LAW_OK);
+    law_suite_near(suite, "stress with other moduli", 6, tau, p.tau, tolerance);
+    if (!law->bear(suite->material.parameters, tau, after)) {
+      ++refused;
+      continue;
+    }
+    if (suite->test->hyperelastic) continue; /* near a limit of stress volumes are hardly determined */
+    law_suite_near(suite, "state there and back", law->n_state, after, p.state,
+                   1e-9 * (1 + law_suite_largest(law->n_state, p.state)));
+  }
+  if (refused > (suite->test->hyperelastic || !strcmp(law->name, "j2") ? 150 : 0))
+    fail_msg("%s: %d of 1000 states cannot bear their stress with other moduli", law->name, (int)refused);
+}
+
 /* With the pressure that the law itself has, K theta, the mixed form is the law: stress, and
  * tangent once the pressure is eliminated. */
 static inline void law_suite_pressure_is_own(LawSuite *suite)
@@ -789,5 +841,6 @@ static inline void law_suite_run(const LawUnderTest *test)
   law_suite_march(&suite, PETSC_TRUE);
   law_suite_march(&suite, PETSC_FALSE);
   law_suite_initial_stress(&suite);
+  law_suite_bear(&suite);
   if (!test->not_mixed) law_suite_pressure(&suite);
 }

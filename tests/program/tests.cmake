@@ -74,6 +74,7 @@ if(TARGET talus)
   talus_program_test(buckling)
   talus_program_test(surcharge)
   talus_program_test(stages_motion)
+  talus_program_test(stiffness)
   talus_program_test(limit)
   # Two at once even where a script starts several ranks: it takes one core and a fifth in the mean, since it starts, writes and compares.
 endif()

@@ -273,6 +273,26 @@ static inline void hencky_energies(PetscReal lambda, PetscReal mu, PetscInt n, P
   }
 }
 
+/* b^e that carries the principal Kirchhoff stresses tau with axes v. */
+static inline void hencky_elastic(PetscReal lambda, PetscReal mu, const PetscReal tau[3], const PetscReal v[9],
+                                  PetscReal b[6])
+{
+  const PetscReal share = lambda / (3.0 * (lambda + 2.0 / 3.0 * mu)) * (tau[0] + tau[1] + tau[2]);
+  PetscReal stretch2[3], basis[36];
+  principal_basis(v, basis);
+  for (int a = 0; a < 3; ++a) stretch2[a] = exp((tau[a] - share) / mu);
+  principal_tensor(stretch2, basis, b);
+}
+
+/* The same of any axes, as Law.bear. */
+static inline PetscBool hencky_bear(PetscReal lambda, PetscReal mu, const PetscReal tau[6], PetscReal b[6])
+{
+  PetscReal principal[3], v[9];
+  sym_eigen(tau, principal, v);
+  hencky_elastic(lambda, mu, principal, v, b);
+  return (PetscBool)(b[0] > 0.0 && isfinite(b[0] + b[1] + b[2]));
+}
+
 /* Principal tau = J sigma with ln J = tr tau / 3K (NAN if there is none), and b^e that carries
  * it. */
 static inline void hencky_stress(PetscReal lambda, PetscReal mu, const PetscReal sigma[6], PetscReal tau[3],
@@ -280,11 +300,8 @@ static inline void hencky_stress(PetscReal lambda, PetscReal mu, const PetscReal
 {
   const PetscReal bulk = lambda + 2.0 / 3.0 * mu, mean = (sigma[0] + sigma[1] + sigma[2]) / 3.0;
   const PetscReal J = volume_from_pressure(VOLUME_LOG, bulk, mean);
-  PetscReal stretch2[3], v[9], basis[36];
+  PetscReal v[9];
   sym_eigen(sigma, tau, v);
   for (int a = 0; a < 3; ++a) tau[a] *= J;
-  principal_basis(v, basis);
-  const PetscReal share = lambda / (3.0 * bulk) * (tau[0] + tau[1] + tau[2]);
-  for (int a = 0; a < 3; ++a) stretch2[a] = exp((tau[a] - share) / mu);
-  principal_tensor(stretch2, basis, b);
+  hencky_elastic(lambda, mu, tau, v, b);
 }

@@ -5,10 +5,11 @@
 #include "material/law.h"
 #include <math.h>
 
-/* bbar = s / mu + x I with s = J dev sigma, where x > 0 makes det bbar = 1. That determinant, x^3 -
- * j2 x + j3, is convex above its largest root and positive at the start: Newton comes down to it
+/* bbar = s / mu + x I with s = J dev sigma, where x > 0 makes det bbar = det. That determinant, x^3 -
+ * j2 x + j3, is convex above its largest root and larger at the start: Newton comes down to it
  * without overshoot. */
-static inline PetscBool shape_from_stress(PetscReal mu, PetscReal J, const PetscReal sigma[6], PetscReal *bbar)
+static inline PetscBool shape_of_det(PetscReal det, PetscReal mu, PetscReal J, const PetscReal sigma[6],
+                                     PetscReal *bbar)
 {
   const PetscReal mean = (sigma[0] + sigma[1] + sigma[2]) / 3.0;
   PetscReal s[6], norm2 = 0.0;
@@ -17,14 +18,20 @@ static inline PetscBool shape_from_stress(PetscReal mu, PetscReal J, const Petsc
     norm2 += (k < 3 ? 1.0 : 2.0) * s[k] * s[k];
   }
   const PetscReal j2 = 0.5 * norm2, j3 = sym_det(s);
-  PetscReal x = 1.0 + sqrt(norm2);
+  PetscReal x = cbrt(det) + sqrt(norm2);
   for (int iteration = 0; iteration < 200; ++iteration) {
-    const PetscReal step = (x * x * x - j2 * x + j3 - 1.0) / (3.0 * x * x - j2);
+    const PetscReal step = (x * x * x - j2 * x + j3 - det) / (3.0 * x * x - j2);
     x -= step;
     if (!(fabs(step) > 2.0 * PETSC_MACHINE_EPSILON * x)) break;
   }
   for (int k = 0; k < 6; ++k) bbar[k] = s[k] + (k < 3 ? x : 0.0);
-  return isfinite(x) && fabs(sym_det(bbar) - 1.0) < 1e-10 && bbar[0] > 0.0 && bbar[0] * bbar[1] > bbar[3] * bbar[3];
+  return isfinite(x) && fabs(sym_det(bbar) - det) < 1e-10 * det && bbar[0] > 0.0 &&
+         bbar[0] * bbar[1] > bbar[3] * bbar[3];
+}
+
+static inline PetscBool shape_from_stress(PetscReal mu, PetscReal J, const PetscReal sigma[6], PetscReal *bbar)
+{
+  return shape_of_det(1.0, mu, J, sigma, bbar);
 }
 
 /* ln J with J p = K ln J: y exp(-y) = p / K has its stable solution below y = 1, where the pressure
@@ -49,6 +56,14 @@ static inline PetscReal volume_from_pressure(VolumeLaw law, PetscReal K, PetscRe
   const PetscReal J = 1.0 + p / K;
   if (law == VOLUME_LOG) return exp(volume_log_from_pressure(K, p));
   return J > 0.0 ? J : NAN;
+}
+
+/* J under the mean Kirchhoff stress q; NAN if there is none. Of J (J - 1) = q / K the root on whose side of 1/2, where q
+ * is least, the volume `before` is. */
+static inline PetscReal volume_from_kirchhoff(VolumeLaw law, PetscReal K, PetscReal q, PetscReal before)
+{
+  if (law == VOLUME_LOG) return exp(q / K);
+  return before < 0.5 ? 0.5 - sqrt(0.25 + q / K) : 0.5 + sqrt(0.25 + q / K);
 }
 
 /* What these laws pack first: each is a pair that differs in its volumetric part alone. */

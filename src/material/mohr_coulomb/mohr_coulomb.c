@@ -234,6 +234,11 @@ static PetscBool initial_stress(const PetscReal *p, const PetscReal sigma[6], Pe
   return mc_yield(p, tau) <= noise && tau[0] - p[MC_CUT] <= noise;
 }
 
+static PetscBool bear(const PetscReal *p, const PetscReal tau[6], PetscReal *state)
+{
+  return hencky_bear(p[MC_LAMBDA], p[MC_MU], tau, state);
+}
+
 static void volume(PetscInt n, const PetscReal *state, PetscReal *J) { volume_of_b(n, N_STATE, state, J); }
 
 static void scale(PetscInt n, const PetscReal *factor, PetscReal *state) { scale_b(n, N_STATE, factor, state); }
@@ -311,6 +316,7 @@ const Law law_mohr_coulomb = {
   .energy = energy,
   .energies = energies,
   .initial_stress = initial_stress,
+  .bear = bear,
   .volume = volume,
   .volume_law = volume_law,
   .scale = scale,

@@ -99,6 +99,11 @@ static PetscBool initial_stress(const PetscReal *q, const PetscReal sigma[6], Pe
   return mc_yield(at.p, tau) <= noise && tau[0] - at.p[MC_CUT] <= noise;
 }
 
+static PetscBool bear(const PetscReal *q, const PetscReal tau[6], PetscReal *state)
+{
+  return hencky_bear(q[SOFT_LAMBDA], q[SOFT_MU], tau, state);
+}
+
 static void size(const PetscReal *q, PetscReal h, PetscReal *state)
 {
   state[6 + SCALE] = q[SOFT_SIZE] > 0.0 ? h / q[SOFT_SIZE] : 1.0;
@@ -219,6 +224,7 @@ const Law law_mohr_coulomb_softening = {
   .energy = energy,
   .energies = energies,
   .initial_stress = initial_stress,
+  .bear = bear,
   .size = size,
   .reach = reach,
   .averaged = 6 + KAPPA,

@@ -26,9 +26,10 @@ LawStatus plugin_gradient_point(const Plugin *plugin, const PetscReal *parameter
                                 const PetscReal *old, PetscReal *state, PetscReal tau[6], PetscReal *c);
 LawStatus plugin_strain_point(const Plugin *plugin, const PetscReal *parameters, const PetscReal dF[9],
                               const PetscReal *old, PetscReal *state, PetscReal tau[6], PetscReal *c);
-/* A state of a law of strains that carries sigma without flow; PETSC_FALSE if there is none. */
-PetscBool plugin_strain_stress(const Plugin *plugin, const PetscReal *parameters, const PetscReal sigma[6],
-                               PetscReal *state);
+/* b of a law of strains that carries the stress, Cauchy's or Kirchhoff's, without flow of its own state; PETSC_FALSE
+ * if there is none. */
+PetscBool plugin_strain_stress(const Plugin *plugin, const PetscReal *parameters, PetscBool cauchy,
+                               const PetscReal stress[6], PetscReal *state);
 /* Logarithmic strain of b. */
 void plugin_strain_of(const PetscReal b[6], PetscReal strain[6]);
 

@@ -184,19 +184,20 @@ LawStatus plugin_strain_point(const Plugin *g, const PetscReal *q, const PetscRe
   return c ? strain_tangent(g, q, strain, principal, basis, old + 6, tau, D, c) : LAW_OK;
 }
 
-/* Newton for tau(eps) = J sigma, J = exp tr eps. */
-PetscBool plugin_strain_stress(const Plugin *g, const PetscReal *q, const PetscReal sigma[6], PetscReal *state)
+/* Newton for tau(eps) = J stress, J = exp tr eps of Cauchy's and 1 of Kirchhoff's. */
+PetscBool plugin_strain_stress(const Plugin *g, const PetscReal *q, PetscBool cauchy, const PetscReal stress[6],
+                               PetscReal *state)
 {
   PetscReal strain[6] = {0}, tau[6], elastic[6], D[36], r[6], dx[6], size, flow = 0.0;
   PetscReal own[LAW_MAX_STATE];
   for (int iteration = 0; iteration < 60; ++iteration) {
-    const PetscReal J = exp(strain[0] + strain[1] + strain[2]);
+    const PetscReal J = cauchy ? exp(strain[0] + strain[1] + strain[2]) : 1.0;
     if (strain_call(g, q, strain, state + 6, own, tau, elastic, g->user.flags & TALUS_LAW_TANGENT ? D : NULL))
       return PETSC_FALSE;
     if (!(g->user.flags & TALUS_LAW_TANGENT) && strain_slopes(g, q, strain, state + 6, D)) return PETSC_FALSE;
     for (int i = 0; i < 6; ++i) {
-      r[i] = J * sigma[i] - tau[i];
-      for (int j = 0; j < 3; ++j) D[6 * i + j] -= J * sigma[i];
+      r[i] = J * stress[i] - tau[i];
+      for (int j = 0; cauchy && j < 3; ++j) D[6 * i + j] -= J * stress[i];
     }
     svd_solve(6, 1e-12, D, r, dx);
     size = flow = 0.0;

@@ -66,9 +66,20 @@ static PetscBool initial_stress(const Plugin *g, const PetscReal *q, const Petsc
   memcpy(begun, state + g->kept, own);
   law_initial_state(&g->law, state);
   memcpy(state + g->kept, begun, own);
-  if (g->user.update_strain) return plugin_strain_stress(g, q, sigma, state);
+  if (g->user.update_strain) return plugin_strain_stress(g, q, PETSC_TRUE, sigma, state);
   if (g->umat.call) return umat_stress(g, q, sigma, state);
   return g->user.initial_stress(q + PLUGIN_STEP, sigma, state) ? PETSC_TRUE : PETSC_FALSE;
+}
+
+/* A subroutine has no elastic strain: its stress is what it had. */
+static PetscBool bear(const Plugin *g, const PetscReal *q, const PetscReal tau[6], PetscReal *state)
+{
+  PetscReal trial[LAW_MAX_STATE];
+  if (g->umat.call) return PETSC_TRUE;
+  memcpy(trial, state, (size_t)g->law.n_state * sizeof *state);
+  if (!plugin_strain_stress(g, q, PETSC_FALSE, tau, trial)) return PETSC_FALSE;
+  memcpy(state, trial, (size_t)g->law.n_state * sizeof *state);
+  return PETSC_TRUE;
 }
 
 static void prepare(const Plugin *g, const Elasticity *elastic, const PetscReal *given, PetscReal *packed)
@@ -141,6 +152,10 @@ static void step(PetscReal time, PetscReal dt, PetscReal *q)
   {                                                                                                                 \
     return initial_stress(&plugins[k], q, sigma, state);                                                            \
   }                                                                                                                 \
+  static PetscBool bear_##k(const PetscReal *q, const PetscReal *tau, PetscReal *state)                             \
+  {                                                                                                                 \
+    return bear(&plugins[k], q, tau, state);                                                                        \
+  }                                                                                                                 \
   static void elastic_##k(const PetscReal *given, PetscReal *two) { elastic(&plugins[k], given, two); }             \
   static void prepare_##k(const Elasticity *e, const PetscReal *given, PetscReal *q)                                \
   {                                                                                                                 \
@@ -170,11 +185,11 @@ SLOT(5)
 SLOT(6)
 SLOT(7)
 
-#define TABLE(k)                                                                                            \
-  {                                                                                                         \
-    .yields = PETSC_TRUE, .update = update_##k, .energy = energy_##k, .initial_stress = initial_stress_##k, \
-    .elastic = elastic_##k, .prepare = prepare_##k, .volume = volume_##k, .volume_law = volume_law,         \
-    .scale = scale_##k, .reduce = reduce_##k, .check = check_##k, .place = place_##k, .step = step          \
+#define TABLE(k)                                                                                                      \
+  {                                                                                                                   \
+    .yields = PETSC_TRUE, .update = update_##k, .energy = energy_##k, .initial_stress = initial_stress_##k,           \
+    .bear = bear_##k, .elastic = elastic_##k, .prepare = prepare_##k, .volume = volume_##k, .volume_law = volume_law, \
+    .scale = scale_##k, .reduce = reduce_##k, .check = check_##k, .place = place_##k, .step = step                    \
   }
 
 static const Law tables[PLUGIN_MOST] = {TABLE(0), TABLE(1), TABLE(2), TABLE(3), TABLE(4), TABLE(5), TABLE(6), TABLE(7)};
@@ -194,6 +209,7 @@ void plugin_fill(PetscInt slot)
   if (!own) g->law.elastic = NULL;
   if (own || !strains) g->law.volume = NULL;
   if (!strains && !g->umat.call && !g->user.initial_stress) g->law.initial_stress = NULL;
+  if (!strains && !g->umat.call) g->law.bear = NULL;
   if (!g->user.energy) g->law.energy = NULL;
   if (!g->umat.begin) g->law.place = NULL;
   if (!g->user.reduce) g->law.reduce = NULL;

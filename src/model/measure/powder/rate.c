@@ -113,8 +113,9 @@ PetscReal window_value(const MeasureSpec *s, const MeasureMemory *memory)
 const char *rate_unit(const char *unit)
 {
   static const char *const rates[][2] = {
-    {"m", "m/s"},      {"m/s", "m/s2"},     {"kg", "kg/s"}, {"m3", "m3/s"},   {"J", "W"},   {"kg m/s", "N"},
-    {"kg m2/s", "Nm"}, {"rad/s", "rad/s2"}, {"N", "N/s"},   {"deg", "deg/s"}, {"s", "s/s"}, {"", "1/s"},
+    {"m", "m/s"},      {"m/s", "m/s2"},     {"kg", "kg/s"},   {"m3", "m3/s"},   {"J", "W"},   {"kg m/s", "N"},
+    {"kg m2/s", "Nm"}, {"rad/s", "rad/s2"}, {"N", "N/s"},     {"deg", "deg/s"}, {"s", "s/s"}, {"", "1/s"},
+    {"Pa", "Pa/s"},    {"m2", "m2/s"},      {"rad", "rad/s"}, {"N m", "N m/s"},
   };
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(rates); ++k)
     if (!strcmp(rates[k][0], unit)) return rates[k][1];
