@@ -474,6 +474,7 @@ PetscErrorCode ModelDestroy(Model **model)
   if (m->points) PetscCall(PointsDestroy(&m->points));
   if (m->grid) PetscCall(GridDestroy(&m->grid));
   PetscCall(PetscFree(m->drawn));
+  PetscCall(PetscFree(m->balanced));
   PetscCall(PetscFree(m->let_go));
   PetscCall(PetscFree(m->raised.nodal));
   PetscCall(PetscFree2(m->unheld.dof, m->unheld.turns));

@@ -69,6 +69,12 @@ PetscErrorCode EquilibriumPrepare(Model *model, StepProblem *problem);
 /* Acceleration now from the balance of momentum with lumped mass, so that a body in free fall
  * falls from the first step on. */
 PetscErrorCode InitialAcceleration(Model *model);
+/* Points' += the field of nodes'. */
+void accelerate_points(const Model *model, const PetscReal *a);
+/* Collective. Accelerations that would balance what acts on nodes now, n_nodes x dim on all copies: held ones, and
+ * contact as far as nodes remember it, are as they are. lacks: what such nodes lack, on owners, N; *size: of what
+ * acts, N. All along the axes. */
+PetscErrorCode BalancedAcceleration(Model *model, PetscReal *a, PetscReal *lacks, PetscReal *size);
 /* In statics: what holds a given stress before the first step, where no equilibrium is sought. */
 PetscErrorCode InitialReactions(Model *model);
 /* contact/mass.c. Collective. The mass matrix that motion changes by in contact; nothing where that is the
@@ -213,8 +219,10 @@ PetscReal rigid_fastest(const Model *model);
 /* Collective. external += the forces of contact that material remembers, on owners: walls go on pressing as they did,
  * but for those that are gone. */
 PetscErrorCode ContactGoOn(Model *model, PetscReal *external);
-/* Collective, after it: these forces are what walls give to the first acceleration. */
-PetscErrorCode ContactBegin(Model *model);
+/* Collective. The same of what nodes remember of them as acceleration, of walls that are gone, too. */
+PetscErrorCode ContactRemembered(Model *model, PetscReal *external);
+/* Collective, after one of them: these forces are what walls give to the first acceleration. */
+PetscErrorCode ContactBegin(Model *model, PetscBool remembered);
 /* Does a wall or an interface of the case rub? Then tangents are not symmetric. */
 PetscBool contact_rubs(const Case *c);
 /* Collective, in PrepareStep: what is in contact starts the step with the motion of its wall. */

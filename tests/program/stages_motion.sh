@@ -97,6 +97,63 @@ for ranks in 1 2 3; do
   done
 done
 
+# What begins, ends or lets go with a stage of dynamics acts from its start on, in full: Newmark's first step lacked half a step of it, momentum for good.
+cat >jumps.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: dynamic, end: 0.1, step: 0.02}
+grid: {box: {min: [-1, -3], max: [3, 1]}, size: 0.5}
+bodies: [{name: block, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: rubber}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0}}
+measures: {px: {momentum: x}, py: {momentum: y}, transfer: {energy: transfer}}
+END
+# jumps NAME VARIANT MOMENTUM: of the last step, to 1e-7 of what it should be.
+jumps() {
+  for ranks in 1 2 3; do
+    expect "$1 ends, $2 on $ranks" 0 on_ranks $ranks "$talus" run $1.yaml --out $1 --force --quiet --set "$2"
+    awk -F, -v want="$3" -v k="$4" 'END { exit !(($k - want)^2 < (1e-7 * want)^2 && NR > 10) }' $1/history.csv ||
+      fail "$name: $(tail -n 1 $1/history.csv)"
+  done
+}
+(cat jumps.yaml && echo 'loads: {tractions: [{on: {body: block, x: 0}, value: [1000, 0]}]}
+stages: [{name: pushed}, {name: flies, analysis: {end: 0.1}, loads: {tractions: []}}]') >traction.yaml
+sed 's/fem/mpm/; s/step: 0.02/&, transfer: thesis/' traction.yaml >points.yaml
+sed 's/fem/gmm/; s/min: \[-1, -3\], max: \[3, 1\]/min: [0, 0], max: [1, 1]/; s/size: 0.5/size: 0.25/' traction.yaml >cloud.yaml
+jumps traction method=fem 100 4
+jumps traction analysis.bossak=-0.1 100 4
+jumps points method=mpm 100 4
+jumps cloud method=gmm 100 4
+(cat jumps.yaml && echo 'loads: {gravity: [0, -10]}
+walls: [{name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, contact: frictionless}]
+stages: [{name: rests}, {name: falls, analysis: {end: 0.1}, walls: [{name: floor, absent: true}]}]') | sed 's/points_per_cell: 4/&, k0: 0/' >wall.yaml
+jumps wall method=fem -1000 5
+sed 's/^walls.*/boundary: [{name: floor, on: {y: 0}, fix: [y]}]/; s/walls:/boundary:/' wall.yaml >held.yaml
+jumps held method=fem -1000 5
+(sed 's/points_per_cell: 4/&, velocity: [1, 0]/' jumps.yaml && echo 'stages: [{name: flies}, {name: damped, analysis: {damping: 5, end: 0.1}}]') >damping.yaml
+jumps damping method=fem 606.277611645633 4 # 1000 (0.95/1.05)^5
+
+# What the boundary gives goes on from what it had to give at once: its impulses are the change of momentum.
+(cat jumps.yaml && echo 'loads: {tractions: [{on: {body: block, y: 1}, value: [0, -5e5]}]}
+boundary: [{name: floor, on: {y: 0}, fix: [x, y]}]
+stages: [{name: pressed}, {name: springs, analysis: {end: 0.02}, loads: {tractions: []}}]') | sed 's/transfer}}/transfer}, f: {reaction: y, of: {boundary: floor}}}/' >springs.yaml
+expect "a load ends above a floor" 0 "$talus" run springs.yaml --out springs --force --quiet
+awk -F, '$3 == 1 { p = $5; lost = $6 } $3 == 2 { exit !(($5 - p - 0.02 * $7)^2 < 1e-10 && ($6 - lost)^2 < 1e-6) }' springs/history.csv ||
+  fail "$name: $(tail -n 2 springs/history.csv)"
+
+# A body that comes in a mesh brings its velocity, meets what is there as it comes, and falls from its first step on.
+(sed 's/points_per_cell: 4/&, velocity: [0, -2]/' jumps.yaml && echo 'loads: {gravity: [0, -10]}
+stages: [{name: falls}, {name: comes, analysis: {end: 0.1}, bodies: [{name: above, absent: false}]}]') | sed 's/max: \[3, 1\]/max: [3, 5]/
+s/^bodies: \[\(.*\)\]$/bodies:\n  - \1\n  - {name: above, shape: {box: {min: [0, 3], max: [1, 4]}}, points_per_cell: 4, material: rubber, absent: true, velocity: [0, -2], spin: 1, spin_centre: [0.5, 3.5]}/
+s/transfer}}/transfer}, pu: {momentum: y, of: {body: above}}, spin: {spin: z, of: {body: above}}}/' >comes.yaml
+sed 's/min: \[0, 3\], max: \[1, 4\]/min: [0, 1], max: [1, 2]/; s/, spin: 1, spin_centre: .0.5, 3.5.//' comes.yaml >onto.yaml
+for ranks in 1 2 3; do
+  expect "a body comes with its velocity on $ranks" 0 on_ranks $ranks "$talus" run comes.yaml --out comes --force --quiet
+  awk -F, 'END { exit !(($5 + 7000)^2 < 1e-6 && ($7 + 3000)^2 < 1e-6 && ($8 - 1)^2 < 1e-4) }' comes/history.csv || fail "$name: $(tail -n 1 comes/history.csv)"
+  expect "and onto another one, on $ranks" 0 on_ranks $ranks "$talus" run onto.yaml --out onto --force --quiet
+  # 1000 kg with 3 m/s, 1250 kg with 2 m/s in cells that the fall has stretched, and 0.02 s of their weight
+  awk -F, '$3 == 2 && !first { first = $5 } END { exit !((first + 5950)^2 < 1e-6 && $6 > 0) }' onto/history.csv || fail "$name: $(tail -n 5 onto/history.csv)"
+done
+
 # What the state before the first step was like is so in later stages, too, and in a run that is resumed in one of them.
 cat >given.yaml <<'END'
 kinematics: plane-strain

@@ -83,6 +83,8 @@ static inline PetscInt cloud_motion(const Grid *grid, PetscInt node)
 /* Let *field.data (n_nodes x components, from PetscMalloc1) follow the nodes; without a name its contents
  * are lost when they change. */
 PetscErrorCode GridCloudFollow(const Grid *grid, CloudField field);
+/* The one that followed last does no more. */
+static inline void grid_cloud_forget(const Grid *grid) { --grid->cloud->n_fields; }
 
 /* Collective. Nodes of others between box[0..2] and box[3..5]; twins left out. */
 PetscErrorCode GridCloudRemote(const Grid *grid, const PetscReal box[6], RemoteNodes *remote);

@@ -62,7 +62,14 @@ static void forget(Model *m, const ContactPoint *c)
   for (PetscInt d = 0; d < m->dim; ++d) kept[KEPT_FORCE + d] = 0;
 }
 
-PetscErrorCode ContactGoOn(Model *m, PetscReal *external)
+/* Of the last force: what nodes remember of it as acceleration, or all, but for walls that are gone. */
+static PetscReal share_of_last(const ContactPoint *c, PetscBool remembered)
+{
+  if (c->before == CONTACT_OPEN) return 0;
+  return remembered ? c->stays : !c->gone;
+}
+
+static PetscErrorCode AddLast(Model *m, PetscBool remembered, PetscReal *external)
 {
   const PetscInt dim = m->dim;
   Contact *s = m->contact;
@@ -74,9 +81,10 @@ PetscErrorCode ContactGoOn(Model *m, PetscReal *external)
   PetscCall(ContactFind(s, &scene));
   PetscCall(PetscCalloc1(m->grid->n_nodes * dim, &force));
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    for (PetscInt e = c->first; e < c->first + c->n && c->before != CONTACT_OPEN && !c->gone; ++e)
-      for (PetscInt d = 0; d < dim; ++d) force[s->node[e] * dim + d] += s->N[e] * c->last[d];
-    if (c->gone) forget(m, c);
+    const PetscReal share = share_of_last(c, remembered);
+    for (PetscInt e = c->first; e < c->first + c->n && share > 0; ++e)
+      for (PetscInt d = 0; d < dim; ++d) force[s->node[e] * dim + d] += s->N[e] * share * c->last[d];
+    if (c->gone && !remembered) forget(m, c);
   }
   PetscCall(GridSumToOwners(m->grid, dim, force));
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) external[i] += force[i];
@@ -84,7 +92,21 @@ PetscErrorCode ContactGoOn(Model *m, PetscReal *external)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactBegin(Model *m)
+PetscErrorCode ContactGoOn(Model *m, PetscReal *external)
+{
+  PetscFunctionBeginUser;
+  PetscCall(AddLast(m, PETSC_FALSE, external));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactRemembered(Model *m, PetscReal *external)
+{
+  PetscFunctionBeginUser;
+  PetscCall(AddLast(m, PETSC_TRUE, external));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactBegin(Model *m, PetscBool remembered)
 {
   Contact *s = m->contact;
   const PetscInt n = s ? s->n_partners : 0;
@@ -93,8 +115,11 @@ PetscErrorCode ContactBegin(Model *m)
   PetscFunctionBeginUser;
   if (!s) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(n, &sum));
-  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
-    if (c->before != CONTACT_OPEN && !c->gone) contact_add(c->x, m->dim, c->last, sum + c->wall);
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    const PetscReal share = share_of_last(c, remembered);
+    const PetscReal f[3] = {share * c->last[0], share * c->last[1], share * c->last[2]};
+    if (share > 0) contact_add(c->x, m->dim, f, sum + c->wall);
+  }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)(n * SUM_NUMBERS), MPIU_REAL, MPI_SUM, m->comm));
   for (PetscInt k = 0; k < n; ++k) s->wall[k].rate = sum[k];
   PetscCall(PetscFree(sum));

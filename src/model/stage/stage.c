@@ -204,6 +204,7 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
   if (!m->method->clouds) m->space->present = PETSC_FALSE;
   PetscCall(ModelInitialise(m));
   if (!m->method->restores_grid && !m->method->clouds) PetscCall(DiscretisationMass(m->space)); /* of points taken */
+  PetscCall(BodiesBringMotion(m, from));
   if (m->points->components[POINT_SLOPE] && !table_has(tables_find(tables, "points"), "slope"))
     PetscCall(SlopesStart(m->space, moves_linearly(from)));
   settle_stress(m);
@@ -214,7 +215,7 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   PetscCall(HoldImbalance(m, from, imbalance));
-  PetscCall(BeginAcceleration(m, from, next));
+  PetscCall(BeginAcceleration(m, from, tables));
   PetscFunctionReturn(0);
 }
 
@@ -224,9 +225,11 @@ PetscErrorCode ModelSucceed(const Case *stage, Diag *diag, Model **model, Imbala
   Tables *tables;
   Diag *unheard;
   PetscInt errors;
+  const PetscBool goes_on = accelerations_go_on(stage, before->c);
 
   PetscFunctionBeginUser;
   PetscCall(TablesCreate(&tables));
+  if (goes_on) PetscCall(JumpFrom(before, tables));
   PetscCall(ModelToTables(before, tables));
   PetscCall(OptionsForget(before)); /* the next model has the same */
   PetscCall(DiagCreate(&unheard));  /* all has been said when the run began */
@@ -235,6 +238,7 @@ PetscErrorCode ModelSucceed(const Case *stage, Diag *diag, Model **model, Imbala
   if (!m) diag_error(diag, NULL, "its model cannot be made");
   if (m && before->body_force) PetscCall(ModelSetBodyForce(m, before->body_force, before->body_force_context));
   if (m) strength_go_on(m, before, diag);
+  if (m && goes_on) PetscCall(JumpExpect(m));
   if (m) PetscCall(ModelTake(m, tables, before->c, PETSC_TRUE, diag, imbalance));
   PetscCall(TablesDestroy(&tables));
   PetscCall(DiagReduce(before->comm, diag, &errors));

@@ -44,10 +44,22 @@ PetscBool material_as_stiff(const Material *a, const Material *b);
 /* The stress of point p stays, in the state of another law or of other constants, and so do its place and its
  * shape; PETSC_FALSE: there is no such state. */
 PetscBool point_swap(Points *points, PetscInt p, const Material *was, const Material *is);
+/* Do velocities end with the stage, or mean nothing in it? */
+PetscBool stands_still(const Model *model);
 /* Collective. Velocities end where the case says so, or where they mean nothing: in statics. */
 PetscErrorCode ResetMotion(Model *model, const Case *from, PetscBool next);
-/* Collective. Accelerations of the balance where nothing moves; those that go on get the jump of gravity. */
-PetscErrorCode BeginAcceleration(Model *model, const Case *from, PetscBool next);
+/* Collective. Accelerations of the balance where nothing moves; those that go on jump with what acts. */
+PetscErrorCode BeginAcceleration(Model *model, const Case *from, const Tables *tables);
+/* jump.c. Do accelerations go on from the stage before, and jump with what acts? */
+PetscBool accelerations_go_on(const Case *c, const Case *from);
+/* Collective. Before its tables are made: what balances the last state of the stage before goes to them, or with the
+ * nodes of its cloud. */
+PetscErrorCode JumpFrom(Model *before, Tables *tables);
+/* Room for that in the next model, before it takes its state; and the jump, when it has. */
+PetscErrorCode JumpExpect(Model *model);
+PetscErrorCode JumpTo(Model *model, const Tables *tables, char reason[256]);
+/* arrive_motion.c. Collective. Nodes of fem that bodies come to get the velocities that these bring. */
+PetscErrorCode BodiesBringMotion(Model *model, const Case *from);
 /* Of values of all nodes, those of this rank's nodes that no boundary holds; the others become 0. */
 void keep_free(const Model *model, PetscReal *values);
 /* Collective. What is out of balance now; where the case releases it over time, it is held. */

@@ -11,20 +11,30 @@ void gravity_at(const Case *c, PetscReal t, PetscReal g[3])
   for (PetscInt d = 0; d < 3; ++d) g[d] = factor * c->gravity[d];
 }
 
-/* Accelerations by the lumped mass, of a method whose nodes are those of this step alone. Both are components in the
- * frames. */
-static void accelerate_lumped(const Model *m, const PetscReal *left)
+/* Accelerations by the lumped mass, of a method whose nodes are those of this step alone; those of held dofs are given,
+ * and `left` is then what is not balanced there. Both are components in the frames. */
+static void accelerate_lumped(const Model *m, PetscReal *left, PetscReal *a)
 {
-  const NodalFields *n = m->nodes;
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
-    const PetscReal mass = n->mass[i / m->dim];
-    n->a[i] = mass > 1e-300 && !m->boundary->fixed[i] ? left[i] / mass : 0;
+    const PetscReal mass = m->nodes->mass[i / m->dim];
+    if (m->boundary->fixed[i]) left[i] -= mass * a[i];
+    else a[i] = mass > 1e-300 ? left[i] / mass : 0;
   }
 }
 
-/* The same by the mass matrix that the steps have, `left` then: what is not balanced, as at held dofs. Else nodes that
- * go on would swing against each other, and the first step would lose energy. */
-static PetscErrorCode AccelerateByMatrix(const Model *m, PetscReal *left)
+/* x = accelerations that are given, 0 at the other dofs. */
+static PetscErrorCode TakeGiven(const Model *m, const PetscReal *a, MassSolve *c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i)
+    c->x[mass_at(c, i / m->dim, ACCELERATION, i % m->dim)] = m->boundary->fixed[i] ? a[i] : 0;
+  PetscCall(MassSubtract(c));
+  PetscFunctionReturn(0);
+}
+
+/* The same by the mass matrix that the steps have. Else nodes that go on would swing against each other, and the first
+ * step would lose energy. rest: those that are given are 0. */
+static PetscErrorCode AccelerateByMatrix(const Model *m, PetscBool rest, PetscReal *left, PetscReal *a)
 {
   const PetscInt dim = m->dim;
   PetscReal enough[MOTIONS];
@@ -38,12 +48,13 @@ static PetscErrorCode AccelerateByMatrix(const Model *m, PetscReal *left)
     c.lack[at] = left[i];
     if (m->boundary->fixed[i]) c.inverse[at] = 0;
   }
+  if (!rest) PetscCall(TakeGiven(m, a, &c));
   PetscCall(MassLack(&c, enough));
   enough[ACCELERATION] *= PetscSqr(BALANCED);
   PetscCall(MassSolveRun(&c, enough, MOST_SWEEPS));
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
     const PetscInt at = mass_at(&c, i / dim, ACCELERATION, i % dim);
-    m->nodes->a[i] = m->boundary->fixed[i] ? 0 : c.x[at];
+    if (!m->boundary->fixed[i]) a[i] = c.x[at];
     left[i] = c.lack[at];
   }
   PetscCall(MassSolveDestroy(&c));
@@ -51,8 +62,8 @@ static PetscErrorCode AccelerateByMatrix(const Model *m, PetscReal *left)
 }
 
 /* What acts on nodes as they begin less what the stress of points needs there, components in the frames: what
- * accelerates them, or what holds them the other way. */
-static PetscErrorCode Unbalanced(Model *m)
+ * accelerates them, or what holds them the other way. goes_on: after a step, and not before the first one. */
+static PetscErrorCode Unbalanced(Model *m, PetscBool goes_on)
 {
   NodalFields *n = m->nodes;
   const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
@@ -63,9 +74,10 @@ static PetscErrorCode Unbalanced(Model *m)
   PetscCall(PetscArrayzero(n->du, dofs));
   for (PetscInt i = 0; i < dofs; ++i) n->history[i] = m->c->analysis.damping * n->v[i] - g[i % dim];
   const NodalScene scene = nodal_scene(m, m->time, n->du);
+  if (goes_on) PetscCall(NodalForcesBegin(&m->forces, &scene)); /* what carries them has moved since */
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, n->external));
-  PetscCall(ContactGoOn(m, n->external));
-  PetscCall(ContactBegin(m));
+  PetscCall((goes_on ? ContactRemembered : ContactGoOn)(m, n->external));
+  if (!goes_on) PetscCall(ContactBegin(m, PETSC_FALSE));
   PetscCall(PetscArrayzero(n->force, dofs));
   pressure_guess(m);
   WeakFormInput in = weak_form_of(m, 0);
@@ -78,6 +90,15 @@ static PetscErrorCode Unbalanced(Model *m)
   PetscFunctionReturn(0);
 }
 
+/* a, in: of held dofs; all of it then, and in n->force what these lack. In the frames. */
+static PetscErrorCode Accelerate(Model *m, PetscBool rest, PetscReal *a)
+{
+  PetscFunctionBeginUser;
+  if (m->method->restores_grid || (m->method->clouds && rest)) accelerate_lumped(m, m->nodes->force, a);
+  else PetscCall(AccelerateByMatrix(m, rest, m->nodes->force, a));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode InitialReactions(Model *m)
 {
   NodalFields *n = m->nodes;
@@ -85,7 +106,7 @@ PetscErrorCode InitialReactions(Model *m)
   PetscFunctionBeginUser;
   if (m->c->stage > 0 || !case_has_stress(m->c)) PetscFunctionReturn(0);
   if (m->c->initial.equilibrium > EQUILIBRIUM_NONE) PetscFunctionReturn(0); /* which tells them */
-  PetscCall(Unbalanced(m));
+  PetscCall(Unbalanced(m, PETSC_FALSE));
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
     n->held[i] = n->reaction[i] = m->boundary->fixed[i] ? -n->force[i] : 0;
   frames_turn(&m->boundary->frames, m->dim, n->held);
@@ -93,16 +114,27 @@ PetscErrorCode InitialReactions(Model *m)
   PetscFunctionReturn(0);
 }
 
+void accelerate_points(const Model *m, const PetscReal *a)
+{
+  const Support *w = m->space->support;
+  for (PetscInt g = 0; g < w->n_groups; ++g) {
+    const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
+      for (PetscInt i = 0; i < nn * m->dim; ++i)
+        point_real(m->points, POINT_A, p)[i % m->dim] +=
+          support_N(w, g, p)[i / m->dim] * a[node[i / m->dim] * m->dim + i % m->dim];
+  }
+}
+
 PetscErrorCode InitialAcceleration(Model *m)
 {
   NodalFields *n = m->nodes;
   const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
-  Discretisation *s = m->space;
 
   PetscFunctionBeginUser;
-  PetscCall(Unbalanced(m));
-  if (m->method->restores_grid || m->method->clouds) accelerate_lumped(m, n->force);
-  else PetscCall(AccelerateByMatrix(m, n->force));
+  PetscCall(Unbalanced(m, PETSC_FALSE));
+  PetscCall(PetscArrayzero(n->a, dofs));
+  PetscCall(Accelerate(m, PETSC_TRUE, n->a));
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i)
     n->held[i] = n->rate[i] = m->boundary->fixed[i] ? -n->force[i] : 0;
   frames_turn(&m->boundary->frames, dim, n->a);
@@ -110,12 +142,37 @@ PetscErrorCode InitialAcceleration(Model *m)
   frames_turn(&m->boundary->frames, dim, n->rate);
   PetscCall(GridToGhosts(m->grid, dim, n->a));
   PetscCall(PetscArraycpy(n->a_points, n->a, dofs));
-  for (PetscInt q = 0; q < s->support->n_groups; ++q) {
-    const PetscInt nn = support_nodes(s->support, q), *node = s->support->node + s->support->node_start[q];
-    for (PetscInt p = s->support->point_start[q]; p < s->support->point_start[q + 1]; ++p)
-      for (PetscInt i = 0; i < nn * dim; ++i)
-        point_real(m->points, POINT_A, p)[i % dim] +=
-          support_N(s->support, q, p)[i / dim] * n->a[node[i / dim] * dim + i % dim];
-  }
+  accelerate_points(m, n->a);
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode SizeOfForces(const Model *m, PetscReal *size)
+{
+  const NodalFields *n = m->nodes;
+  PetscReal local = 0;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) local += PetscSqr(n->external[i]) + PetscSqr(n->force[i]);
+  PetscCall(MPIU_Allreduce(&local, size, 1, MPIU_REAL, MPI_SUM, m->comm));
+  *size = PetscSqrtReal(*size);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BalancedAcceleration(Model *m, PetscReal *a, PetscReal *lacks, PetscReal *size)
+{
+  const Frames *frames = &m->boundary->frames;
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArraycpy(a, m->nodes->a, dofs));
+  frames_turn(frames, m->dim, a);
+  PetscCall(Unbalanced(m, PETSC_TRUE));
+  PetscCall(SizeOfForces(m, size));
+  PetscCall(Accelerate(m, PETSC_FALSE, a));
+  for (PetscInt i = 0; i < dofs; ++i)
+    lacks[i] = i < m->grid->n_owned * m->dim && m->boundary->fixed[i] ? m->nodes->force[i] : 0;
+  frames_turn(frames, m->dim, a);
+  frames_turn(frames, m->dim, lacks);
+  PetscCall(GridToGhosts(m->grid, m->dim, a));
   PetscFunctionReturn(0);
 }
