@@ -28,6 +28,16 @@ static PetscBool is_held(const Discretisation *s, PetscInt node)
   return PETSC_FALSE;
 }
 
+/* Does it not matter what a node would do without mass? One that is held along all axes does nothing; in statics, where
+ * nothing is flung, one that is held along some is left alone, but on the axis, on which all of a ring hangs. */
+static PetscBool needs_no_mass(const Discretisation *s, PetscInt node)
+{
+  PetscInt held = 0;
+  for (PetscInt d = 0; d < s->grid->dim; ++d) held += s->boundary->fixed[node * s->grid->dim + d] != 0;
+  if (held == 0 || held == s->grid->dim) return (PetscBool)(held > 0);
+  return (PetscBool)(case_is_static(&s->c->analysis) && !boundary_slides_on_axis(s->boundary, node));
+}
+
 /* How much of the mass is missing that even a node at the corner of a body would have; 0: none, 1:
  * all. A corner at the axis weighs as much as a ring of a third of a spacing. */
 static PetscReal starved(const Discretisation *s, PetscInt node, PetscReal density)
@@ -35,9 +45,7 @@ static PetscReal starved(const Discretisation *s, PetscInt node, PetscReal densi
   const PetscInt dim = s->grid->dim;
   const PetscReal h = s->grid->cloud->spacing, corner = dim == 3 ? h * h * h / 16 : h * h / 8;
   const PetscReal round = kinematics_weight(s->c->kinematics, PetscMax(s->grid->x[node * dim], h / 3));
-  PetscInt held = 0;
-  for (PetscInt d = 0; d < dim; ++d) held += s->boundary->fixed[node * dim + d] != 0;
-  if (held == dim) return 0; /* what it would do without mass does not matter */
+  if (needs_no_mass(s, node)) return 0;
   return PetscMax(0, 1 - PetscMax(0, s->nodes->mass[node]) / (density * corner * round));
 }
 
