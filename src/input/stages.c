@@ -82,12 +82,13 @@ static PetscBool is_absent(const YamlNode *entry)
   return absent && absent->text && !strcmp(absent->text, "true");
 }
 
-/* A list of things, not of numbers. */
-static PetscBool has_names(const YamlNode *list)
+/* Does a stage change the list entry by entry? Those of things which are there for long: loads come and go as a whole,
+ * and so does what a stage gives as an empty list. */
+static PetscBool goes_by_entries(const YamlNode *list, const YamlNode *over)
 {
-  for (PetscInt i = 0; i < list->n && list->kind == YAML_SEQUENCE; ++i)
-    if (name_of(list->child[i])) return PETSC_TRUE;
-  return PETSC_FALSE;
+  static const char *const lists[] = {"bodies", "boundary", "walls", "interfaces", NULL};
+  if (list->kind != YAML_SEQUENCE || over->kind != YAML_SEQUENCE || !over->n) return PETSC_FALSE;
+  return (PetscBool)(list->parent && !list->parent->parent && list->key && is_one_of(list->key, lists));
 }
 
 /* {name: gate, absent: true} */
@@ -234,7 +235,7 @@ static PetscErrorCode Lay(const Layer *l, YamlNode *under, const YamlNode *over)
   PetscFunctionBeginUser;
   if (yaml_equal(under, over)) PetscFunctionReturn(0);
   if (mappings && !stands_alone(over)) PetscCall(LayKeys(l, under, over, NULL));
-  else if (under->kind == YAML_SEQUENCE && has_names(over)) PetscCall(LayEntries(l, under, over));
+  else if (goes_by_entries(under, over)) PetscCall(LayEntries(l, under, over));
   else PetscCall(Replace(l, under, over));
   PetscFunctionReturn(0);
 }

@@ -8,10 +8,10 @@
  * its place in the file.
  *
  * A mapping is changed key by key, but one that says what it is (law, type) stands for itself. Of
- * lists of things that have names an entry takes the place of that of its name, or comes behind the
- * others; entries of `bodies`, and those that say no more than whether they are there, change that
- * one key by key. Any other value is replaced. What is repeated word for word is as old as it
- * was. */
+ * `bodies`, `boundary`, `walls` and `interfaces` an entry takes the place of that of its name, or
+ * comes behind the others; entries of `bodies`, and those that say no more than whether they are
+ * there, change that one key by key. Any other value, such as a list of loads, is replaced. What is
+ * repeated word for word is as old as it was. */
 PetscErrorCode StageLay(YamlDocument *document, PetscInt k, Diag *diag);
 /* What a stage changes of the case before it: those keys that differ, resolved, in full. */
 PetscErrorCode StageText(const Case *before, const Case *stage, char **text);

@@ -1,6 +1,7 @@
 talus_test(input/test_case_read RANKS 1 2)
 talus_test(input/test_case_bad)
 talus_test(input/test_case_basis)
+talus_test(input/test_case_stages)
 talus_test(input/test_case_empty)
 talus_test(input/test_case_set)
 talus_test(input/test_petsc_options)

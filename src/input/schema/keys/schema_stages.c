@@ -26,12 +26,13 @@ static const SchemaEntry stage_entries[] = {
   PART_OF("materials", "with `law` a material stands for itself, without it single parameters change"),
   PART_OF("boundary",
           "entries take the place of those of their name, or come behind them; {name: ..., absent: true} "
-          "takes one away"),
+          "takes one away, [] all. Those without a name stay"),
   PART_OF("walls",
           "likewise; walls that come later are `absent` at the top. A wall that is given anew begins where its shape "
           "is, not where its motion has brought it"),
   PART_OF("interfaces", "likewise, of another law; which bodies meet stays"),
-  PART_OF("loads", "single keys; a list takes the place of the one before"),
+  PART_OF("loads",
+          "single keys; a list takes the place of the one before, named or not: what it leaves out acts no more"),
   PART_OF("measures",
           "entries take the place of those of their name, or come behind them; NAME: {absent: true} drops one. Cells "
           "of history.csv are empty where a measure is not there"),
