@@ -269,6 +269,11 @@ PetscBool case_has_stress(const Case *c)
   return PETSC_FALSE;
 }
 
+PetscBool case_equilibrates(const Case *c)
+{
+  return (PetscBool)(c->initial.equilibrium > EQUILIBRIUM_NONE && c->stage == 0);
+}
+
 PetscBool case_starts_with_gravity(const Case *c)
 {
   return case_has_stress(c) || c->initial.equilibrium > EQUILIBRIUM_NONE || (c->initial.run && c->stage == 0);

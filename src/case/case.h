@@ -116,6 +116,8 @@ const MotionSpec *case_raised_motion(const Case *c);
 /* Is that the amplitude of what is raised to its limit? */
 PetscBool case_raises(const Case *c, const Amplitude *amplitude);
 PetscBool case_has_stress(const Case *c); /* does any body start with one? */
+/* Is an equilibrium sought before its first step? Of stages that of the first. */
+PetscBool case_equilibrates(const Case *c);
 /* The factor at time t on a parameter of material i, or on its "density": 1 without an amplitude. When
  * something is sought (case_seeks), time ends for materials with `end`. */
 PetscReal case_material_factor(const Case *c, PetscInt i, const char *parameter, PetscReal t);

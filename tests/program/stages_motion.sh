@@ -330,6 +330,7 @@ says err.txt "bodies[0].velocity has no effect here: statics has no inertia"
 awk -F, 'NR == 2 { first = $4 } END { exit !(first == 0 && ($4 - 300) ^ 2 < 1e-8 && $5 * $5 < 1e-16) }' comes/history.csv || fail "$name: $(cat comes/history.csv)"
 # An equilibrium minds no wall with mass that comes later.
 expect "a wall that comes after an equilibrium" 0 "$talus" check comes.yaml --set 'bodies[0].k0=0.5' --set 'loads={gravity: [0, -10]}'
+expect "and bodies that come and move" 0 "$talus" check comes.yaml --set initial.equilibrium=direct --set 'loads={gravity: [0, -10]}'
 expect "a wall that is there" 2 "$talus" check comes.yaml --set 'bodies[0].k0=0.5' --set 'loads={gravity: [0, -10]}' --set 'walls[0].absent=false'
 says err.txt "comes.yaml:$(grep -n 'mass:' comes.yaml | cut -d: -f1):" "error: an initial equilibrium knows nothing of walls with mass, as 'ball' is" "until then"
 finish

@@ -24,7 +24,7 @@ void rigid_check(const Model *m, Diag *diag)
   if (case_seeks(&m->c->analysis))
     refuse(m, "the search for a factor of safety or a limit load",
            "without `mass` it stands where it is, or moves as `motion` says", diag);
-  if (m->c->initial.equilibrium > EQUILIBRIUM_NONE)
+  if (case_equilibrates(m->c))
     refuse(m, "an initial equilibrium",
            "let it come with the next stage (`absent: true` until then), or begin without one: "
            "`initial: {equilibrium: none}`",

@@ -180,7 +180,7 @@ void equilibrium_check(const Model *m, Diag *diag)
 {
   const Case *c = m->c;
   char path[64];
-  if (c->initial.equilibrium <= EQUILIBRIUM_NONE) return;
+  if (!case_equilibrates(c)) return;
   if (m->method->clouds)
     diag_error(diag, "initial.equilibrium",
                "method %s does not seek an equilibrium before its first step: mpm and fem do", m->method->name);

@@ -174,7 +174,7 @@ PetscErrorCode CheckHeld(Model *m, Diag *diag)
     PetscFunctionReturn(0);
   }
   PetscCall(ModelCountPoints(m, &points));
-  if ((m->scheme->inertia && m->c->initial.equilibrium <= EQUILIBRIUM_NONE) || !points) PetscFunctionReturn(0);
+  if ((m->scheme->inertia && !case_equilibrates(m->c)) || !points) PetscFunctionReturn(0);
   PetscCall(TellLoose(m, PETSC_FALSE, diag));
   PetscFunctionReturn(0);
 }
