@@ -117,6 +117,8 @@ PetscErrorCode OutsideWarn(const Model *model, Diag *diag);
 
 /* limit_load.c. What cannot be raised is a mistake. */
 void raised_start(Model *model, Diag *diag);
+/* What a stage before has found stays known, until another one seeks. */
+void raised_go_on(Model *model, const Model *before);
 /* A warning where cells lock, once there is a grid. */
 void raised_advise(const Model *model, Diag *diag);
 /* Time at which loads have the size that they have at time t: at most `end`, and behind it by the factor of

@@ -54,6 +54,14 @@ PetscErrorCode RunWriteRow(Run *r)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode RunWriteLastRow(Run *r)
+{
+  PetscFunctionBeginUser;
+  if (r->strength.n || r->limit.n) r->row_step = -1;
+  PetscCall(RunWriteRow(r));
+  PetscFunctionReturn(0);
+}
+
 /* Whatever stands there now is not this run's. */
 static PetscErrorCode IsGone(Run *r, PetscBool *gone)
 {
@@ -282,8 +290,7 @@ static PetscErrorCode Close(Run *r, PetscReal *measures)
   if (!r->failed && (r->n_written || may_go_on(r))) PetscCall(CheckpointSave(r));
   /* a resumed run may have nothing left to do */
   if (r->row_step == r->model->step) PetscCall(Measure(r));
-  if (r->strength.n || r->limit.n) r->row_step = -1; /* the last row once more, with the answer */
-  PetscCall(RunWriteRow(r));
+  PetscCall(RunWriteLastRow(r));
   PetscCall(RunWriteState(r));
   seconds = r->before + (MPI_Wtime() - r->start);
   if (measures) run_give_columns(r, measures);

@@ -61,6 +61,8 @@ void run_stop(Run *r, const char *reason);
 /* A file that the disk refused ends the run; the log has said so. */
 PetscErrorCode RunWritten(Run *r, PetscErrorCode code);
 PetscErrorCode RunWriteRow(Run *r);
+/* Collective. The last row of a stage or run: that of a search once more, with its answer. */
+PetscErrorCode RunWriteLastRow(Run *r);
 PetscErrorCode RunWriteState(Run *r);
 
 /* equilibrium.c. Collective. The state before the first step, where the case asks for an equilibrium. */

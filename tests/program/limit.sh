@@ -207,6 +207,24 @@ rm cut/timings.txt
 expect "resumed" 0 "$talus" run --resume cut --quiet
 for file in limit.csv history.csv; do cmp -s whole/$file cut/$file || fail "$name: $file differs"; done
 
+# A stage after the search knows what it has found, whole or resumed, and so does the last row of the search
+sed 's/^analysis:.*/analysis: {type: static, steps: 1}/' block.yaml >after.yaml
+cat >>after.yaml <<'END'
+checkpoint: {steps: 1, keep: 99}
+stages:
+  - {name: seeks, analysis: {type: limit-load, limit: {raise: press, step: 20, tolerance: 1e-3}}}
+  - {name: after, analysis: {type: static, steps: 3}}
+END
+expect "a stage after it" 0 "$talus" run after.yaml --out after --quiet
+lacks err.txt "is empty (nan)"
+awk -F, '$3 == 1 { last = $4 } $3 == 2 && ($4 != last || !($4 > 188 && $4 < 189)) { bad = 1 } END { exit bad || $3 != 2 }' \
+  after/history.csv || fail "$name: $(tail -n 4 after/history.csv)"
+cp -r after cut-after
+ls cut-after/checkpoint_*.h5 | tail -n 2 | xargs rm
+rm cut-after/timings.txt
+expect "a stage after it, resumed" 0 "$talus" run --resume cut-after --quiet
+cmp -s after/history.csv cut-after/history.csv || fail "$name: history.csv differs"
+
 # What cannot be
 expect "no such load" 2 "$talus" check block.yaml --set analysis.limit.raise=pres
 says err.txt "there is no load, no entry of the boundary and no wall 'pres'" "did you mean 'press'"

@@ -27,6 +27,13 @@ void raised_start(Model *m, Diag *diag)
                "gravity is raised from zero, but bodies start with the stress of a weight");
 }
 
+void raised_go_on(Model *m, const Model *before)
+{
+  if (m->c->analysis.type == ANALYSIS_LIMIT) return;
+  m->raised.value = before->raised.value;
+  m->raised.unfound = before->raised.unfound;
+}
+
 /* Quadrilaterals that ask what yields in their middle alone. */
 static PetscBool is_reduced(const Model *m)
 {

@@ -239,6 +239,7 @@ PetscErrorCode ModelSucceed(const Case *stage, Diag *diag, Model **model, Imbala
   if (m && before->body_force) PetscCall(ModelSetBodyForce(m, before->body_force, before->body_force_context));
   if (m) strength_go_on(m, before, diag);
   if (m && goes_on) PetscCall(JumpExpect(m));
+  if (m) raised_go_on(m, before);
   if (m) PetscCall(ModelTake(m, tables, before->c, PETSC_TRUE, diag, imbalance));
   PetscCall(TablesDestroy(&tables));
   PetscCall(DiagReduce(before->comm, diag, &errors));

@@ -106,7 +106,7 @@ static PetscErrorCode SofteningToTables(Model *m, Tables *tables)
 static PetscErrorCode StrengthToTables(const Model *m, Tables *tables)
 {
   const PetscBool seeks = m->c->analysis.type == ANALYSIS_FACTOR;
-  const PetscBool found = !seeks && m->strength.lower > 0;
+  const PetscBool found = !seeks && (m->strength.lower > 0 || m->strength.upper > 0);
   Table *table;
 
   PetscFunctionBeginUser;
@@ -117,11 +117,37 @@ static PetscErrorCode StrengthToTables(const Model *m, Tables *tables)
   PetscFunctionReturn(0);
 }
 
+/* What a stage before has found; whoever raises a load finds it again. */
+static PetscErrorCode FoundToTables(const Model *m, Tables *tables)
+{
+  const PetscReal found[] = {m->raised.value, m->raised.unfound};
+  Table *table;
+  Column *column;
+
+  PetscFunctionBeginUser;
+  if (PetscIsNanReal(found[0]) && !m->raised.unfound) PetscFunctionReturn(0);
+  PetscCall(TablesAdd(tables, "limit_found", PETSC_TRUE, 1, &table));
+  PetscCall(TableAdd(table, "value_unfound", NULL, COLUMN_REAL, 2, NULL, &column));
+  PetscCall(PetscArraycpy((PetscReal *)column->data, found, 2));
+  PetscFunctionReturn(0);
+}
+
+static void found_from_table(Model *m, const Table *table, char reason[256])
+{
+  if (!table || reason[0]) return;
+  const PetscReal *found = table_data(table, "value_unfound", COLUMN_REAL, 2, reason);
+  if (found && table->rows != 1) snprintf(reason, 256, "limit_found makes no sense");
+  if (!found || reason[0]) return;
+  m->raised.value = found[0];
+  m->raised.unfound = (PetscBool)(found[1] != 0);
+}
+
 static PetscErrorCode RaisedToTables(const Model *m, Tables *tables)
 {
   Table *table;
 
   PetscFunctionBeginUser;
+  if (m->c->analysis.type != ANALYSIS_LIMIT) PetscCall(FoundToTables(m, tables));
   if (!m->raised.rising) PetscFunctionReturn(0);
   PetscCall(TablesAdd(tables, "raised", PETSC_TRUE, 1, &table));
   PetscCall(TableAdd(table, "kept", NULL, COLUMN_REAL, RAISED_KEPT, (void *)&m->raised, NULL));
@@ -406,6 +432,7 @@ PetscErrorCode ModelFromTables(Model *m, Tables *tables, char reason[256])
   strength_from_table(m, tables_find(tables, "strength"), reason);
   PetscCall(MaterialsBack(m));
   raised_from_table(m, tables_find(tables, "raised"), reason);
+  found_from_table(m, tables_find(tables, "limit_found"), reason);
   initial_from_table(m, tables_find(tables, "initial"), reason);
   state_lost_from_tables(m, tables, reason);
   PetscCall(StateListsFromTables(m, tables, reason));

@@ -97,7 +97,7 @@ PetscErrorCode RunEndStage(Run *r)
   char path[CHECKPOINT_PATH];
 
   PetscFunctionBeginUser;
-  PetscCall(RunWriteRow(r));
+  PetscCall(RunWriteLastRow(r));
   PetscCall(RunWriteState(r));
   if (r->failed || (spec->minutes <= 0 && spec->steps <= 0)) PetscFunctionReturn(0);
   run_dir_stage_path(run_dir_path(r->dir), r->stage, path);
