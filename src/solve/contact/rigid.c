@@ -248,7 +248,7 @@ PetscBool rigid_floats(const RigidWall *b)
 {
   PetscReal acts = 0;
   for (int i = 0; i < RIGID; ++i) acts += rigid_has(b, i) ? PetscAbsReal(load_of(b, i)) : 0;
-  return b->dt == 0 && acts > 0 && b->size[0] == 0 && b->stiff == 0;
+  return b->dt == 0 && acts > 0 && b->size[0] == 0;
 }
 
 PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance, PetscReal digit)

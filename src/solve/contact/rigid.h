@@ -78,7 +78,7 @@ void rigid_push(RigidWall *b, const PetscReal p[RIGID]);
 /* What the balance of the wall lacks, N and N m, and the derivative of its inertia, 6 x 6. */
 void rigid_residual(const RigidWall *b, PetscReal r[RIGID]);
 void rigid_inertia(const RigidWall *b, PetscReal D[RIGID * RIGID]);
-/* In statics: does something act on it while it touched nothing, and nothing was near, at the last assembly? */
+/* In statics: does something act on it while it touched nothing at the last assembly, whether something was near or not? */
 PetscBool rigid_floats(const RigidWall *b);
 /* Does it balance, up to `tolerance` of what acts on it, or what a length `digit` makes of contact? */
 PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance, PetscReal digit);

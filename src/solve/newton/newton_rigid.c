@@ -184,13 +184,25 @@ PetscBool newton_rigid_met(const Newton *n)
   return PETSC_TRUE;
 }
 
+/* Does nothing hold the wall, and has nothing done so in the last step? A footing that is near its body may have lost it
+ * on the way. */
+static PetscBool is_loose(const Contact *s, const RigidWall *wall)
+{
+  const PetscReal *f = s->wall[wall->wall].mean.force;
+  const PetscBool held = (PetscBool)(f[0] != 0 || f[1] != 0 || f[2] != 0);
+  return (PetscBool)(rigid_floats(wall) && (wall->stiff == 0 || !held));
+}
+
 const char *newton_rigid_reason(Newton *n)
 {
   const Contact *s = n->problem->scene.contact;
   for (PetscInt k = 0; s && k < s->n_rigid; ++k) {
-    if (!rigid_floats(s->rigid + k)) continue;
-    snprintf(n->loose, sizeof n->loose, "the wall with mass '%s' touches nothing, and in statics nothing else holds it",
-             n->problem->scene.c->walls[s->rigid[k].wall].name);
+    const RigidWall *wall = s->rigid + k;
+    if (!is_loose(s, wall)) continue;
+    snprintf(n->loose, sizeof n->loose,
+             "the wall with mass '%s' touches nothing%s, and in statics nothing else holds it",
+             n->problem->scene.c->walls[wall->wall].name,
+             wall->stiff > 0 ? " where the iteration ended, near as it is to a body" : "");
     return n->loose;
   }
   return NULL;
