@@ -70,4 +70,32 @@ expect "by steps" 0 "$talus" run case.yaml --out steps --quiet
 [ "$(cut -d, -f2 steps/history.csv | tr '\n' ' ')" = 'step 0 4 8 12 16 20 24 ' ] || fail "$name: rows"
 [ "$(grep -c '"name"' steps/points.hdf.series)" -eq 5 ] || fail "$name: states"
 
+# Statics of which steps are halved: they come back to the thirty times that were asked for, and the peak is one of them
+cat >peak.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, end: 3, steps: 30}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.5}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, material: m}]
+materials: {m: {law: mohr-coulomb, density: 1000, young: 5e7, poisson: 0.25, friction_angle: 35, cohesion: 2e4, dilatancy_angle: 0}}
+formulation: displacement
+boundary:
+  - {on: {x: 0}, fix: [x]}
+  - {on: {y: 0}, fix: [y]}
+  - {name: t, on: {y: 1}, displacement: {y: 0.01}, amplitude: [[0, 0], [1, 1], [2, -1]]}
+measures: {R: {reaction: y, of: {boundary: t}}}
+output: {every: end}
+checkpoint: {steps: 1, keep: 99}
+END
+for ranks in 2 1; do
+  expect "a peak on $ranks" 0 on_ranks $ranks "$talus" run peak.yaml --out peak --force --quiet
+  lacks peak/log.txt "halvings = 0"
+  awk -F, 'NR > 1 { k = int($1 * 10 + 0.5); if (($1 * 10 - k) ^ 2 < 1e-16) { if (k != before + (NR > 2)) exit 1; before = k } } END { exit before != 30 }' \
+    peak/history.csv || fail "$name: $(cut -d, -f1 peak/history.csv | tr '\n' ' ')"
+done
+cp -r peak cut
+ls cut/checkpoint_*.h5 | sed -n '9,$p' | xargs rm
+rm cut/timings.txt
+expect "a peak, resumed" 0 "$talus" run --resume cut --quiet
+cmp -s peak/history.csv cut/history.csv || fail "$name: another history"
 finish

@@ -103,11 +103,43 @@ static void test_shortened(void **state)
   near(c.next, 4);
 }
 
+/* Statics that were halved come back to the times of their steps, in parts that are alike, and grow to whole ones again. */
+static void test_return(void **state)
+{
+  const AnalysisSpec fixed = {.step = 1, .smallest = 0.01, .largest = 1};
+  StepControl c;
+  PetscReal t = 3;
+  (void)state;
+  step_control_start(&c, 1);
+  assert_true(step_control_return(&c, &fixed, t - 0.3) == PETSC_MAX_REAL); /* nothing was halved */
+  t += step_control_cut(&c, 1);
+  for (int k = 0; k < 24; ++k) {
+    const PetscReal limit = step_control_return(&c, &fixed, t), dt = PetscMin(c.next, limit);
+    const PetscBool returns = (PetscBool)(limit < c.next);
+    step_control_accept(
+      &c, &fixed, 6,
+      &(StepTaken){.dt = dt, .iterations = 8, .shortened = returns, .returning = returns, .reach = PETSC_MAX_REAL});
+    assert_true(dt > 0.4);
+    assert_true(PetscFloorReal(t + 1e-9) == PetscFloorReal(t + dt - 1e-9)); /* it goes over none of these times */
+    t += dt;
+  }
+  near(c.next, 1);
+  near(t, PetscFloorReal(t + 0.5));
+  assert_true(step_control_return(&c, &fixed, t) > 1 - 1e-9); /* and no rest of round-off is left */
+  assert_true(step_control_return(&c, &fixed, t - 1e-12) > 1 - 1e-9);
+  c.next = 0.1;
+  assert_true(step_control_return(&c, &fixed, t) == PETSC_MAX_REAL);
+  near(step_control_return(&c, &fixed, t + 0.85), 0.075);
+  c.next = 2; /* whoever lets steps grow has no such times */
+  assert_true(step_control_return(&c, &grows, t + 0.5) == PETSC_MAX_REAL);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_iterations),    cmocka_unit_test(test_fixed), cmocka_unit_test(test_memory),
     cmocka_unit_test(test_cuts_in_a_row), cmocka_unit_test(test_reach), cmocka_unit_test(test_shortened),
+    cmocka_unit_test(test_return),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -166,7 +166,7 @@ static PetscReal reach_of(const Model *m, PetscReal speed)
   return flows && a->travel > 0 && speed > 0 ? a->travel * m->grid->smallest / speed : PETSC_MAX_REAL;
 }
 
-PetscErrorCode ChooseNextStep(Model *m, PetscBool shortened, const StepReport *report)
+PetscErrorCode ChooseNextStep(Model *m, PetscBool shortened, PetscBool returning, const StepReport *report)
 {
   PetscReal fastest = 0, speed;
 
@@ -182,6 +182,7 @@ PetscErrorCode ChooseNextStep(Model *m, PetscBool shortened, const StepReport *r
   const StepTaken taken = {.dt = report->dt,
                            .iterations = report->newton.iterations,
                            .shortened = shortened,
+                           .returning = returning,
                            .reach = reach_of(m, PetscSqrtReal(speed))};
   step_control_accept(&m->control, &m->c->analysis, m->c->newton.ease, &taken);
   PetscFunctionReturn(0);

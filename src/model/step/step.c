@@ -1,10 +1,22 @@
 /* One step of any method, as algorithms 1 and 2 of the thesis have it. */
 #include "model/model_private.h"
 
+/* In statics steps that were halved lead back to the times that were asked for: what changes with them has its corners
+ * there. What searches try is no time. */
+static PetscReal until_return(const Model *m)
+{
+  const PetscBool seeks = (PetscBool)(m->raised.rising || m->strength.trying || m->initial.seeking);
+  if (m->scheme->inertia || seeks) return PETSC_MAX_REAL;
+  return step_control_return(&m->control, &m->c->analysis, m->time - m->c->start);
+}
+
 PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
 {
   const PetscReal change = m->walls ? walls_until_change(m->walls, m->time) : PETSC_MAX_REAL;
   limit = PetscMin(limit, change); /* no step goes over the time at which a wall appears or vanishes */
+  const PetscReal back = until_return(m);
+  const PetscBool returning = (PetscBool)(back < PetscMin(limit, m->control.next));
+  limit = PetscMin(limit, back);
   const PetscBool shortened = limit < m->control.next;
   PetscReal dt = PetscMin(limit, m->control.next);
   StepStart start;
@@ -30,7 +42,7 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
     PetscCall(CommitStep(m, dt, &energy));
     PetscCall(ConvectStep(m, dt, &energy, report)); /* (c) points move, and nodes or not */
     PetscCall(MaterialsSettle(m, report));
-    PetscCall(ChooseNextStep(m, shortened && !report->cuts, report));
+    PetscCall(ChooseNextStep(m, shortened && !report->cuts, returning && !report->cuts, report));
     outside_judge(m, report);
     if (!m->initial.seeking) PetscCall(MeasuresRemember(m, report->dt));
   } else PetscCall(StepStartRestore(m, &start, report));

@@ -1,5 +1,7 @@
 #include "solve/newton/step_control.h"
 
+#define ROUNDING 1e-9 /* of a step: times are sums */
+
 void step_control_start(StepControl *c, PetscReal step)
 {
   *c = (StepControl){.next = step, .failed = PETSC_MAX_REAL, .patience = STEP_WAIT, .since = PETSC_MAX_INT};
@@ -17,6 +19,15 @@ PetscReal step_control_cut(StepControl *c, PetscReal dt)
   c->failed = dt;
   c->next = dt / 2;
   return c->next;
+}
+
+PetscReal step_control_return(const StepControl *c, const AnalysisSpec *a, PetscReal came)
+{
+  const PetscReal whole = PetscFloorReal(came / a->step + ROUNDING);
+  const PetscReal rest = (whole + 1) * a->step - came;
+  if (c->since == PETSC_MAX_INT || c->next > (1 + ROUNDING) * a->step) return PETSC_MAX_REAL;
+  const PetscReal parts = PetscCeilReal((1 - ROUNDING) * rest / c->next);
+  return parts <= 2 ? rest / parts : PETSC_MAX_REAL;
 }
 
 /* Twice as large after an easy step; a little larger as long as iterations stay below one and a
@@ -38,6 +49,7 @@ void step_control_accept(StepControl *c, const AnalysisSpec *a, PetscInt ease, c
   if (c->since == 1 && f > 1) next = taken->dt; /* it was cut: not back at once */
   /* an output was due: that says nothing about larger steps */
   if (taken->shortened) next = PetscMax(next, c->next);
+  if (taken->returning && f > 1) next = PetscMax(next, f * c->next); /* else two halves never became one again */
   if (c->failed < PETSC_MAX_REAL) next = PetscMin(next, PetscMax(0.75 * c->failed, taken->dt));
   if (a->largest > a->step) next = PetscMin(next, PetscMax(taken->reach, a->step));
   c->next = PetscMin(next, a->largest);

@@ -19,6 +19,7 @@ typedef struct {
   PetscReal dt;        /* s */
   PetscInt iterations; /* of the try that converged */
   PetscBool shortened; /* by the caller (an output was due), not by the control */
+  PetscBool returning; /* it was, to come back to the times asked for */
   /* a step in which the fastest point goes as far as it may, s; PETSC_MAX_REAL if nothing flows */
   PetscReal reach;
 } StepTaken;
@@ -26,6 +27,10 @@ typedef struct {
 void step_control_start(StepControl *control, PetscReal step);
 /* Newton failed with dt: the step to try instead. */
 PetscReal step_control_cut(StepControl *control, PetscReal dt);
+/* After a step was halved: how long the next one may be at most, so that steps which are no longer than analysis->step
+ * come back to the times that it counts, in parts that are alike. came: since these times began, s. PETSC_MAX_REAL: as
+ * long as it likes. */
+PetscReal step_control_return(const StepControl *control, const AnalysisSpec *analysis, PetscReal came);
 /* Newton solved the step: chooses `next`. Never takes it below analysis->step for the sake of
  * iterations or reach. */
 void step_control_accept(StepControl *control, const AnalysisSpec *analysis, PetscInt ease, const StepTaken *taken);
