@@ -275,14 +275,38 @@ static PetscBool lacks_energy(const Model *m)
   return PETSC_FALSE;
 }
 
-static const char *why_empty(const Model *m, const MeasureSpec *measure)
+/* Is there anything of what it sums up, or takes the mean of? */
+static PetscErrorCode SumsAnything(const Model *m, const MeasureSpec *measure, PetscBool *any)
 {
-  if (!strcmp(measure->kind, "limit_load")) return "the search for it was not over";
+  const PetscBool tensor = (PetscBool)(!strcmp(measure->kind, "stress") || !strcmp(measure->kind, "strain"));
+  const PetscInt body = measure_body(m, measure);
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  *any = PETSC_FALSE;
+  if (!measure_number(measure)->sum && !tensor) PetscFunctionReturn(0);
+  for (PetscInt p = 0; p < m->points->n; ++p) n += measure_share(m, measure, body, p) > 0;
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, m->comm));
+  *any = (PetscBool)(n > 0);
+  PetscFunctionReturn(0);
+}
+
+static const char *why_no_limit(const Model *m)
+{
+  if (m->raised.unfound) return "the search for it has found none";
+  return m->c->analysis.type == ANALYSIS_LIMIT ? "the search for it was not over" : "no limit load was sought";
+}
+
+/* any: is there something of what it sums up? */
+static const char *why_empty(const Model *m, const MeasureSpec *measure, PetscBool any)
+{
+  if (!strcmp(measure->kind, "limit_load")) return why_no_limit(m);
   if (measure_has_window(measure)) return "too few steps with a value reach into its window";
   if (measure_find(measure->kind)->events) return "none of what it counts is over";
   if (!strcmp(measure->kind, "formula")) return "its formula has no value there, or a measure in it has none";
   if (!strncmp(measure->kind, "wall_", 5)) return "a wall without `mass` has no motion of its own";
   if (!strcmp(measure->kind, "energy") && lacks_energy(m)) return "the law of a material tells no energy";
+  if (any) return "what it measures is there, and deformed beyond what numbers hold";
   return "no point is left of what it measures";
 }
 
@@ -306,6 +330,7 @@ static void warn_of_no_limit(const Model *m, Diag *diag)
 PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
 {
   char path[256];
+  PetscBool any;
   const Outside *o = &m->outside;
 
   PetscFunctionBeginUser;
@@ -315,8 +340,9 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
     if (!PetscIsNanReal(values[k]) || m->memory[k].ended > 0) continue;
     if (!strcmp(m->c->measures[k].kind, "factor_of_safety")) continue; /* the log says why it has none */
     snprintf(path, sizeof path, "measures.%s", m->c->measures[k].name);
+    PetscCall(SumsAnything(m, m->c->measures + k, &any));
     diag_warning(diag, path, "'%s' is empty (nan) at the end: %s", m->c->measures[k].name,
-                 why_empty(m, m->c->measures + k));
+                 why_empty(m, m->c->measures + k, any));
   }
   if (o->removed > 0)
     diag_warning(diag, "grid.outside", "%.0f points of %.4g kg left the grid and were removed", (double)o->removed,
