@@ -494,4 +494,23 @@ for set in basis=null 'basis={cell: {}}' method=fem interfaces[0].contact=bonded
   expect "comes to stand, $set" 0 "$talus" run comes.yaml --set "$set" --set "$own" --set "$law" --out comes --force --quiet
   awk -F, 'END { exit !(($4 - 20000) ^ 2 < 1 && ($5 - 5000) ^ 2 < 1 && $6 > 0.99 && $6 < 1.02) }' comes/history.csv || fail "$name: $(tail -n 1 comes/history.csv)"
 done
+# Two cells on three ranks, one of which has no nodes: a load that the second stage leaves out acts no more.
+cat >drop.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static}
+grid: {box: {min: [0, 0], max: [1, 2]}, size: 1}
+bodies: [{name: l, shape: {box: {min: [0, 0], max: [1, 2]}}, material: a}]
+materials: {a: {law: neo-hookean, density: 2000, young: 1e9, poisson: 0.3}}
+boundary: [{name: base, on: {boundary: bottom}, fix: [x, y]}]
+loads: {tractions: [{name: p, on: {body: l, y: 2}, value: [0, -1.5e4]}, {name: q, on: {body: l, y: 2}, value: [0, -2e4]}]}
+measures: {R: {reaction: y, of: {boundary: base}}}
+stages:
+  - {name: both}
+  - {name: one, loads: {tractions: [{name: q, on: {body: l, y: 2}, value: [0, -2e4]}]}}
+END
+for ranks in 1 3; do
+  expect "a load is left out, $ranks" 0 on_ranks $ranks timeout 60 "$talus" run drop.yaml --out drop --force --quiet
+  awk -F, 'END { exit !(($4 - 20000) ^ 2 < 1e-4) }' drop/history.csv || fail "$name: $(tail -n 1 drop/history.csv)"
+done
 finish

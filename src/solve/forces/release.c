@@ -20,7 +20,7 @@ static PetscErrorCode Create(const NodalScene *scene, Diag *diag, void **data)
   if (!case_goes_on(scene->c) || scene->c->release <= 0) PetscFunctionReturn(0);
   const PetscInt dim = scene->grid->dim;
   PetscCall(PetscNew(&r));
-  PetscCall(PetscCalloc1(scene->grid->n_nodes * dim, &r->force));
+  PetscCall(PetscCalloc1(scene->grid->n_nodes * dim + 1, &r->force)); /* never NULL: ranks without nodes take part */
   if (scene->grid->cloud)
     PetscCall(GridCloudFollow(scene->grid, (CloudField){&r->force, dim, "release", "N", PETSC_TRUE}));
   *data = r;
