@@ -46,7 +46,7 @@ LANES_INLINE LawStatus update_lanes(const PetscReal *parameters, PetscInt n, con
     t[k] = s[k] + q;
     t[k + 3] = s[k + 3];
   }
-  lanes_store(6, n, b, state);
+  if (state) lanes_store(6, n, b, state);
   lanes_store(6, n, t, tau);
   const Lanes a = dq - m / 3.0, g = 0.5 * m - q;
   if (c) {

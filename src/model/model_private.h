@@ -184,8 +184,8 @@ void note_flow(Model *model, PetscReal sign);
 PetscErrorCode CommitStep(Model *model, PetscReal dt, EnergyStep *energy);
 /* Collective. Points and nodes go where the solution leads them. */
 PetscErrorCode ConvectStep(Model *model, PetscReal dt, EnergyStep *energy, StepReport *report);
-/* Collective. shortened: was the accepted step made that short from outside, by the caller or (returning) to come back to
- * the times asked for? */
+/* Collective. shortened: was the accepted step made that short from outside, by the caller or (returning) to come back
+ * to the times asked for? */
 PetscErrorCode ChooseNextStep(Model *model, PetscBool shortened, PetscBool returning, const StepReport *report);
 
 /* contact/start.c. Collective. Walls of the case, and what of the material touches them at the start. */

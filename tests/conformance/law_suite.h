@@ -715,8 +715,9 @@ static inline void law_suite_other(const LawSuite *suite, PetscReal softer, Pets
   if (suite->law->rate) suite->law->step(0, 0, parameters); /* nothing flows */
 }
 
-/* A state that has flowed bears its stress with other moduli, too, at rest, and is what it was with its own again. Where
- * shape and volume act on each other, or with p = K (J - 1), Kirchhoff stresses have a least value: few are near it. */
+/* A state that has flowed bears its stress with other moduli, too, at rest, and is what it was with its own again.
+ * Where shape and volume act on each other, or with p = K (J - 1), Kirchhoff stresses have a least value: few are near
+ * it. */
 static inline void law_suite_bear(LawSuite *suite)
 {
   const Law *law = suite->law;

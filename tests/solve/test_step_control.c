@@ -103,7 +103,7 @@ static void test_shortened(void **state)
   near(c.next, 4);
 }
 
-/* Statics that were halved come back to the times of their steps, in parts that are alike, and grow to whole ones again. */
+/* Statics that were halved come back to the times of their steps, in parts that are alike, and grow whole again. */
 static void test_return(void **state)
 {
   const AnalysisSpec fixed = {.step = 1, .smallest = 0.01, .largest = 1};

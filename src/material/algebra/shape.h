@@ -58,8 +58,8 @@ static inline PetscReal volume_from_pressure(VolumeLaw law, PetscReal K, PetscRe
   return J > 0.0 ? J : NAN;
 }
 
-/* J under the mean Kirchhoff stress q; NAN if there is none. Of J (J - 1) = q / K the root on whose side of 1/2, where q
- * is least, the volume `before` is. */
+/* J under the mean Kirchhoff stress q; NAN if there is none. Of J (J - 1) = q / K the root on whose side
+ * of 1/2, where q is least, the volume `before` is. */
 static inline PetscReal volume_from_kirchhoff(VolumeLaw law, PetscReal K, PetscReal q, PetscReal before)
 {
   if (law == VOLUME_LOG) return exp(q / K);

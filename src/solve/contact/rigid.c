@@ -177,7 +177,7 @@ void rigid_begin(RigidWall *b, Walls *walls, const Case *c, PetscReal t, PetscRe
 {
   b->dt = case_is_static(&c->analysis) ? 0 : dt;
   b->share = share;
-  b->part = middle ? 0.5 : 1;
+  b->part = middle || (b->dt > 0 && c->walls[b->wall].contact == CONTACT_BONDED) ? 0.5 : 1;
   b->now.step = dt;
   b->stands = wall_stands(walls, b->wall, t + dt);
   load_at(b, c, middle ? t + dt / 2 : t, b->load[0]);

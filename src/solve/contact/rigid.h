@@ -32,7 +32,7 @@ typedef struct {
   RigidState now, start;    /* in the step, and as it began */
   PetscBool stands;         /* in this step */
   PetscReal dt, share;      /* dt 0: statics; share: the mean of contact over what the balance asks for */
-  PetscReal part;           /* of the step at which forces act: 1, in the midpoint rule 1/2 */
+  PetscReal part;           /* of the step at which forces have their levers: 1, in the midpoint rule and bonded 1/2 */
   PetscReal load[2][RIGID]; /* weight, force and torque at the step's start and end */
   PetscReal q[RIGID];       /* increments: translation d, and theta of exp(theta), m, rad */
   /* of contact on the material at the last assembly, over all ranks: forces and torques, and the sums of their
@@ -78,7 +78,7 @@ void rigid_push(RigidWall *b, const PetscReal p[RIGID]);
 /* What the balance of the wall lacks, N and N m, and the derivative of its inertia, 6 x 6. */
 void rigid_residual(const RigidWall *b, PetscReal r[RIGID]);
 void rigid_inertia(const RigidWall *b, PetscReal D[RIGID * RIGID]);
-/* In statics: does something act on it while it touched nothing at the last assembly, whether something was near or not? */
+/* In statics: does something act on it while it touched nothing at the last assembly, be something near or not? */
 PetscBool rigid_floats(const RigidWall *b);
 /* Does it balance, up to `tolerance` of what acts on it, or what a length `digit` makes of contact? */
 PetscBool rigid_balances(const RigidWall *b, PetscReal tolerance, PetscReal digit);

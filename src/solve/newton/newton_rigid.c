@@ -184,8 +184,8 @@ PetscBool newton_rigid_met(const Newton *n)
   return PETSC_TRUE;
 }
 
-/* Does nothing hold the wall, and has nothing done so in the last step? A footing that is near its body may have lost it
- * on the way. */
+/* Does nothing hold the wall, and has nothing done so in the last step? A footing that is near its body may have lost
+ * it on the way. */
 static PetscBool is_loose(const Contact *s, const RigidWall *wall)
 {
   const PetscReal *f = s->wall[wall->wall].mean.force;
