@@ -172,6 +172,20 @@ static YamlNode *find_entry(const YamlNode *list, const YamlNode *entry)
   return NULL;
 }
 
+/* Of two entries of a name in one list the second would take the place of the first. */
+static void check_names(const Layer *l, const YamlNode *list)
+{
+  char path[512];
+  for (PetscInt i = 1; i < list->n && l->diag; ++i)
+    for (PetscInt k = 0; k < i; ++k) {
+      const char *name = name_of(list->child[i]), *other = name_of(list->child[k]);
+      if (!name || !other || strcmp(name, other)) continue;
+      yaml_error(l->document, l->diag, yaml_find(list->child[i], "name"), PETSC_TRUE, "the name '%s' is taken by %s",
+                 name, yaml_path(list->child[k], path, sizeof path));
+      break;
+    }
+}
+
 /* Of a body that is there only its material can change: with all else it has begun. */
 static void check_begun(const Layer *l, const YamlNode *was, const YamlNode *entry)
 {
@@ -204,6 +218,7 @@ static PetscErrorCode LayEntries(const Layer *l, YamlNode *list, const YamlNode 
   YamlNode *copy;
 
   PetscFunctionBeginUser;
+  check_names(l, over);
   for (PetscInt i = 0; i < over->n; ++i) {
     const YamlNode *entry = over->child[i];
     YamlNode *was = find_entry(list, entry);

@@ -87,9 +87,26 @@ static void Entries(void **state)
   }
 }
 
+/* The second would take the place of the first. */
+static void Names(void **state)
+{
+  static const char *const twice[] = {
+    "boundary: [{name: n, on: {boundary: left}, fix: [x]}, {name: n, on: {boundary: right}, fix: [x]}]",
+    "walls: [{name: w, contact: stick}, {name: w, contact: frictionless}]"};
+  char text[4000], *said;
+  (void)state;
+  for (size_t i = 0; i < sizeof twice / sizeof *twice; ++i) {
+    snprintf(text, sizeof text, LOADED "  - {name: two, %s}\n", twice[i]);
+    assert_null(read_text(text, &said));
+    if (!strstr(said, "is taken by stages[1].")) fail_msg("%s", said);
+    free(said);
+  }
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Loads), cmocka_unit_test(Ages), cmocka_unit_test(Entries)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Loads), cmocka_unit_test(Ages), cmocka_unit_test(Entries),
+                                     cmocka_unit_test(Names)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

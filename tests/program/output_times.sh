@@ -93,6 +93,10 @@ for ranks in 2 1; do
   awk -F, 'NR > 1 { k = int($1 * 10 + 0.5); if (($1 * 10 - k) ^ 2 < 1e-16) { if (k != before + (NR > 2)) exit 1; before = k } } END { exit before != 30 }' \
     peak/history.csv || fail "$name: $(cut -d, -f1 peak/history.csv | tr '\n' ' ')"
 done
+# So do those that end where an output is due.
+expect "a peak beside outputs" 0 "$talus" run peak.yaml --out beside --force --quiet --set materials.m.cohesion=1e9 --set output.every=0.35
+awk -F, 'NR > 1 { k = int($1 * 10 + 0.5); n += ($1 * 10 - k) ^ 2 < 1e-16 } END { exit n != 31 || NR < 36 }' beside/history.csv ||
+  fail "$name: $(cut -d, -f1 beside/history.csv | tr '\n' ' ')"
 cp -r peak cut
 ls cut/checkpoint_*.h5 | sed -n '9,$p' | xargs rm
 rm cut/timings.txt

@@ -208,6 +208,16 @@ for wrong in "grid.parameters.hh=0.1 grid.parameters.hh=0.1: error: the .geo of 
   says err.txt "${text%|*}" "${text#*|}"
 done
 
+
+# A .geo that gives a name a value itself does not listen; one that asks first does, and one that counts with it.
+geo=$(sed -n 's/.*mesh: \([a-z]*\.geo\).*/\1/p' case.yaml)
+cp "$geo" listens.geo
+{ echo 'h = 0.5;' && cat listens.geo; } >"$geo"
+expect "deaf" 2 "$talus" check case.yaml --set grid.parameters.h=0.25
+says err.txt "grid.parameters.h=0.25: error: the .geo of the case gives 'h' a value itself: what it is told is lost" "DefineConstant[ name = value ]"
+{ echo 'If (!Exists(h)) h = 0.5; EndIf' && cat listens.geo && echo 'h = 2 * h;'; } >"$geo"
+expect "hears" 0 "$talus" check case.yaml --set grid.parameters.h=0.25
+
 # --- cells in cells ---
 cat >over.msh <<'END'
 $MeshFormat

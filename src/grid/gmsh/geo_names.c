@@ -12,8 +12,8 @@
 /* What is known of the names in some files. */
 typedef struct {
   const char *wanted;
-  PetscBool found;
-  PetscInt n; /* names that the files let others choose */
+  PetscBool found, lost; /* lost: a file gives it another value, whatever it was given */
+  PetscInt n;            /* names that the files let others choose */
   char names[MAX_NAMES][64];
 } Search;
 
@@ -57,13 +57,35 @@ static void note_constants(Search *s, const char *p)
   }
 }
 
+static PetscBool is_wanted(const Search *s, const char *p, size_t length)
+{
+  return (PetscBool)(length == strlen(s->wanted) && !strncmp(p, s->wanted, length));
+}
+
+/* `b = 2;` where `b` stands, behind another statement, and not b = 2 * b; */
+static PetscBool is_set(const Search *s, const char *p)
+{
+  const char *value = p + strlen(s->wanted) + strspn(p + strlen(s->wanted), " \t\r\n");
+  if (*value != '=' || value[1] == '=') return PETSC_FALSE;
+  for (++value; *value && *value != ';';) {
+    size_t length = 0;
+    while (is_name((unsigned char)value[length])) ++length;
+    if (is_wanted(s, value, length)) return PETSC_FALSE;
+    value += length ? length : 1;
+  }
+  return PETSC_TRUE;
+}
+
 static void look_at_words(Search *s, const char *text)
 {
   static const char define[] = "DefineConstant";
+  char before = ';'; /* what stands before the word; behind If (!Exists(b)) a bracket */
   for (const char *p = text; *p;) {
     size_t length = 0;
     while (is_name((unsigned char)p[length])) ++length;
-    if (length == strlen(s->wanted) && !strncmp(p, s->wanted, length)) s->found = PETSC_TRUE;
+    if (is_wanted(s, p, length)) s->found = PETSC_TRUE;
+    if (is_wanted(s, p, length) && before == ';' && is_set(s, p)) s->lost = PETSC_TRUE;
+    if (!isspace((unsigned char)*p)) before = p[length ? length - 1 : 0];
     if (length == strlen(define) && !strncmp(p, define, length)) note_constants(s, p + length);
     p += length ? length : 1;
   }
@@ -121,8 +143,10 @@ static void tell(const Search *s, PetscBool any, Diag *diag)
   PetscSNPrintf(path, sizeof path, "grid.parameters.%.120s", s->wanted);
   if (!any) diag_error(diag, path, "parameters are for a .geo; a .msh takes none");
   else {
-    diag_error(diag, path, "the .geo of the case has no use for a number '%s'", s->wanted);
-    if (s->n) diag_hint_names(diag, s->wanted, words);
+    if (s->lost)
+      diag_error(diag, path, "the .geo of the case gives '%s' a value itself: what it is told is lost", s->wanted);
+    else diag_error(diag, path, "the .geo of the case has no use for a number '%s'", s->wanted);
+    if (s->n && !s->lost) diag_hint_names(diag, s->wanted, words);
     else diag_hint(diag, "a .geo takes numbers by DefineConstant[ name = value ];");
   }
 }
@@ -143,7 +167,7 @@ PetscErrorCode GeoCheckParameters(MPI_Comm comm, const Case *c, Diag *diag)
       any |= is_geo(c->bodies[b].mesh);
       if (is_geo(c->bodies[b].mesh)) look_into(s, c->bodies[b].mesh, 0);
     }
-    if (!s->found && !access(c->grid.mesh, R_OK))
+    if ((!s->found || s->lost) && !access(c->grid.mesh, R_OK))
       tell(s, any, diag); /* a file that is not there is told of elsewhere */
   }
   PetscCall(PetscFree(s));

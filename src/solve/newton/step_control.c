@@ -1,6 +1,7 @@
 #include "solve/newton/step_control.h"
 
 #define ROUNDING 1e-9 /* of a step: times are sums */
+#define ASTRAY 1e-6   /* of a step: what is no sum of steps */
 
 void step_control_start(StepControl *c, PetscReal step)
 {
@@ -25,7 +26,9 @@ PetscReal step_control_return(const StepControl *c, const AnalysisSpec *a, Petsc
 {
   const PetscReal whole = PetscFloorReal(came / a->step + ROUNDING);
   const PetscReal rest = (whole + 1) * a->step - came;
-  if (c->since == PETSC_MAX_INT || c->next > (1 + ROUNDING) * a->step) return PETSC_MAX_REAL;
+  const PetscBool astray =
+    (PetscBool)(came - whole * a->step > ASTRAY * a->step); /* by a wall that came, or an output */
+  if ((c->since == PETSC_MAX_INT && !astray) || c->next > (1 + ROUNDING) * a->step) return PETSC_MAX_REAL;
   const PetscReal parts = PetscCeilReal((1 - ROUNDING) * rest / c->next);
   return parts <= 2 ? rest / parts : PETSC_MAX_REAL;
 }

@@ -27,9 +27,9 @@ typedef struct {
 void step_control_start(StepControl *control, PetscReal step);
 /* Newton failed with dt: the step to try instead. */
 PetscReal step_control_cut(StepControl *control, PetscReal dt);
-/* After a step was halved: how long the next one may be at most, so that steps which are no longer than analysis->step
- * come back to the times that it counts, in parts that are alike. came: since these times began, s. PETSC_MAX_REAL: as
- * long as it likes. */
+/* After a step was halved or ended elsewhere: how long the next one may be at most, so that steps which are no longer
+ * than analysis->step come back to the times that it counts, in parts that are alike. came: since these times began,
+ * s. PETSC_MAX_REAL: as long as it likes. */
 PetscReal step_control_return(const StepControl *control, const AnalysisSpec *analysis, PetscReal came);
 /* Newton solved the step: chooses `next`. Never takes it below analysis->step for the sake of
  * iterations or reach. */

@@ -111,7 +111,7 @@ static const SchemaEntry analysis_entries[] = {
   KEY("until", LIST, NULL, "any of these ends the run earlier", .table = &until, AT(AnalysisSpec, until),
       .count = offsetof(AnalysisSpec, n_until)),
   KEY("steps", INTEGER, NULL,
-      "number of equal steps up to the end; in statics those after a halved one come back to their times",
+      "number of equal steps up to the end; in statics those after a shorter one come back to their times",
       .note = "static: 1, if `step` is not given", AT_LEAST(1), INPUT_ONLY, AT(AnalysisSpec, step)),
   KEY("step", NUMBER, "s", "the first step, and the largest one unless `largest` says otherwise", ABOVE(0),
       AT(AnalysisSpec, step)),
