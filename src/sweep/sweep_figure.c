@@ -51,7 +51,7 @@ static PetscErrorCode Draw(const SweepRun *s, PetscInt k, PetscInt n, const Figu
   PetscBool done;
 
   PetscFunctionBeginUser;
-  taken_name(&measure->taken, name);
+  taken_name_among(&s->taken[k], s->n_taken, s->taken, name);
   PetscCall(PetscSNPrintf(png, sizeof png, "%s/%s.png", s->out, name));
   for (char *c = png + strlen(s->out) + 1; *c; ++c)
     if (*c == ' ') *c = '-';

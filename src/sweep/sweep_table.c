@@ -28,7 +28,8 @@ static void write_header(FILE *out, const SweepRun *s)
     fputc(',', out);
   }
   for (PetscInt k = 0; k < s->n_taken; ++k) {
-    write_cell(out, text_with_unit(taken_name(&s->taken[k], name), s->members.member[0].units[k], label));
+    write_cell(out, text_with_unit(taken_name_among(&s->taken[k], s->n_taken, s->taken, name),
+                                   s->members.member[0].units[k], label));
     fputc(',', out);
   }
   fputs("steps,iterations,halvings,seconds,ended,directory\n", out);

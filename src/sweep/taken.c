@@ -1,5 +1,7 @@
 #include "sweep/taken.h"
 #include <math.h>
+#include <stdio.h>
+#include <string.h>
 
 const SchemaWord take_words[] = {
   {"end", TAKE_END, "its value at the end"},
@@ -14,6 +16,25 @@ const char *taken_name(const Taken *taken, char name[128])
 {
   if (taken->take == TAKE_END) PetscSNPrintf(name, 128, "%s", taken->measure);
   else PetscSNPrintf(name, 128, "%s %s", taken->measure, take_words[taken->take].word);
+  return name;
+}
+
+static PetscBool same_window(const Taken *a, const Taken *b)
+{
+  if (a->has_window != b->has_window) return PETSC_FALSE;
+  return (PetscBool)(!a->has_window || (a->from == b->from && a->to == b->to));
+}
+
+const char *taken_name_among(const Taken *taken, PetscInt n, const Taken *others, char name[128])
+{
+  PetscBool alone = PETSC_TRUE;
+  for (PetscInt k = 0; k < n && alone; ++k)
+    if (others[k].take == taken->take && !strcmp(others[k].measure, taken->measure))
+      alone = same_window(&others[k], taken);
+  taken_name(taken, name);
+  const size_t used = strlen(name);
+  if (!alone && taken->has_window)
+    (void)snprintf(name + used, 128 - used, " %.15g to %.15g s", (double)taken->from, (double)taken->to);
   return name;
 }
 

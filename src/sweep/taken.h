@@ -29,6 +29,8 @@ typedef struct {
 
 /* "flow", or "flow mean" */
 const char *taken_name(const Taken *taken, char name[128]);
+/* Its name among n that stand beside each other: "flow mean 0 to 0.2 s" where another window is taken of the same. */
+const char *taken_name_among(const Taken *taken, PetscInt n, const Taken *others, char name[128]);
 /* Its unit, from that of the measure. Returns buffer. */
 const char *taken_unit(const Taken *taken, const char *measure, char unit[64]);
 /* NaN where the history has no such number: no row within the window. The mean is over time

@@ -101,6 +101,14 @@ cmp -s whole/history.csv b/young=3e5/history.csv || fail "$name: not the same bi
 low=$(tail -n +2 whole/history.csv | cut -d, -f4 | sort -g | head -n 1)
 grep -q "^3e5,$low," b/sweep.csv || fail "$name: the least is $low"
 
+# Several windows of one measure have them in their names, and a measure that is alone has none
+expect "windows" 0 "$talus" sweep case.yaml --over grid.size=0.5,0.25 --measure tip:mean:0:0.5 --measure tip:mean:0.5:1 --measure tip:max:0.5:1 --out windows
+says windows/sweep.csv "grid.size [m],tip mean 0 to 0.5 s [m],tip mean 0.5 to 1 s [m],tip max [m],steps"
+says out.txt "tip mean 0 to 0.5 s = 0 m, tip mean 0.5 to 1 s = "
+if command -v gnuplot >/dev/null; then
+  for picture in tip-mean-0-to-0.5-s tip-mean-0.5-to-1-s tip-max; do [ -s windows/$picture.png ] || fail "$name: no $picture.png"; done
+fi
+
 # Sweeps by name
 cat >sweep.yaml <<'END'
 title: Beams

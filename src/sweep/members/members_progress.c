@@ -29,7 +29,8 @@ static void tell_values(FILE *out, const Member *m)
 {
   char name[128];
   for (PetscInt k = 0; k < PetscMin(m->n_taken, 6); ++k)
-    fprintf(out, "%s = %.5g %s, ", taken_name(&m->taken[k], name), (double)m->values[k], m->units[k]);
+    fprintf(out, "%s = %.5g %s, ", taken_name_among(&m->taken[k], m->n_taken, m->taken, name), (double)m->values[k],
+            m->units[k]);
 }
 
 void members_tell_end(const Members *members, const Member *m, PetscReal elapsed)
