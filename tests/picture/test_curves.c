@@ -4,7 +4,8 @@
 #include <math.h>
 #include <sys/stat.h>
 #include "picture/compare/compare.h"
-#include "picture/compare/difference.h"
+#include "picture/compare/found.h"
+#include "picture/compare/lack.h"
 #include "picture/curves/keys.h"
 #include "picture/figure.h"
 #include "picture/plot.h"
@@ -58,6 +59,40 @@ static void test_difference_by_hand(void **state)
   assert_true(curve_difference(&still, &first, &d) && isinf(d.relative) && d.largest == 2);
   assert_false(curve_difference(&first, &after, &d));
   assert_false(curve_difference(&first, &empty, &d));
+}
+
+/* A value that only one curve has is missing in the other, but where rows are apart and at the seam of two stages. */
+static void test_lack(void **state)
+{
+  const PetscReal t[] = {0, 1, 2, 3, 4}, whole[] = {0, 1, 2, 3, 4}, lost[] = {0, 1, NAN, NAN, NAN},
+                  gap[] = {0, 1, NAN, 3, 4};
+  const PetscReal late[] = {0.5, 1.5, 1.9}, some[] = {1, 1, NAN}, seam[] = {0, 1 + 1e-13, 1 + 1e-13, 2, 4},
+                  end[] = {0, 1, NAN, NAN, NAN};
+  const Curve all = {5, t, whole}, until = {5, t, lost}, between = {5, t, gap}, other = {3, late, some},
+              stages = {5, seam, end};
+  Lack lack;
+  (void)state;
+  assert_true(curve_lack(&until, &all, &lack) && lack.from == 2 && lack.to == 4);
+  assert_false(curve_lack(&all, &until, &lack) || curve_lack(&until, &until, &lack));
+  assert_true(curve_lack(&between, &all, &lack) && lack.from == 2 && lack.to == 2);
+  /* the other one has no row between 1.5, where it has a value, and 1.9, where the first may have lost it already */
+  assert_false(curve_lack(&other, &until, &lack) || curve_lack(&until, &other, &lack));
+  assert_true(curve_lack(&other, &all, &lack) && lack.from == 1.9 && lack.to == 1.9);
+  assert_false(curve_lack(&stages, &until, &lack) || curve_lack(&until, &stages, &lack));
+}
+
+static void test_found(void **state)
+{
+  const PetscReal t[] = {0, 1, 2, 3}, early[] = {NAN, 4, 4, 4}, late[] = {NAN, NAN, NAN, 5}, more[] = {NAN, NAN, 5, 6},
+                  full[] = {5, 5, 5, 5};
+  const Curve a = {4, t, early}, b = {4, t, late}, c = {4, t, more}, d = {4, t, full};
+  Difference found;
+  (void)state;
+  assert_true(curve_found_difference(&a, &b, &found) && found.largest == 1 && found.last == 1 &&
+              found.relative == 0.25);
+  assert_true(found.from == 1 && found.to == 3);
+  assert_false(curve_found_difference(&a, &a, &found) || curve_found_difference(&a, &c, &found) ||
+               curve_found_difference(&a, &d, &found));
 }
 
 static void WriteFile(const char *folder, const char *name, const char *text)
@@ -299,6 +334,8 @@ static int Tests(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_difference_of_waves),
                                      cmocka_unit_test(test_difference_by_hand),
+                                     cmocka_unit_test(test_lack),
+                                     cmocka_unit_test(test_found),
                                      cmocka_unit_test(test_keys),
                                      cmocka_unit_test(test_formats),
                                      cmocka_unit_test(test_legend),

@@ -56,6 +56,27 @@ says err.txt "no picture is drawn as '.jpg'"
 expect "compare" 0 "$talus" compare run again --tolerance 0 --out compared
 says out.txt "The cases do not differ" "corner [m]" "picture = compared/history_corner.png"
 [ "$(sed -n 2p compared/differences.csv | cut -d, -f7)" = 0 ] || fail "compare: the same run differs"
+
+# A value that only one run has is a difference; what searches find is compared whenever they found it
+copy_without() { mkdir -p $1 && cp run/case.yaml $1 && awk -F, -v OFS=, -v from=$2 'FNR > from { $3 = "nan" } { print }' run/history.csv >$1/history.csv; }
+copy_without lost 8
+expect "compare with what was lost" 3 "$talus" compare run lost --measure corner --tolerance 1e-6 --out compared
+says out.txt "'corner' has no value in lost from 0.07 to 0.1 s, where run has one"
+[ "$(sed -n 2p compared/differences.csv | cut -d, -f7,10-)" = 0,nan,lost,0.07 ] || fail "$name: $(sed -n 2p compared/differences.csv)"
+expect "compare what was lost with it" 3 "$talus" compare lost run --tolerance 1e-6 --out compared
+says out.txt "'corner' has no value in lost from 0.07 to 0.1 s, where run has one"
+cp -r lost lost-again
+expect "compare what both lost" 0 "$talus" compare lost lost-again --tolerance 0 --out compared
+lacks out.txt "has no value"
+search() { mkdir -p $1 && printf 'time [s],step,limit [],load []\n0,0,nan,0\n1,1,nan,5\n%s\n%s\n' "$2" "$3" >$1/history.csv; }
+search early 2,2,nan,10 2,2,10,10 && search late 3,2,nan,10 3,2,10.1,10 && search never 2,2,nan,10 2.5,3,nan,10
+expect "compare searches" 0 "$talus" compare early late --measure limit --tolerance 0.011 --out compared
+says out.txt "'limit' of late: what each run has found, whenever that was (from 2 to 3 s)" "1.00e-02"
+expect "compare searches more closely" 3 "$talus" compare early late --measure limit --tolerance 0.009 --out compared
+expect "compare with a search that found nothing" 3 "$talus" compare early never --measure limit --tolerance 1 --out compared
+says out.txt "'limit' has no value in never at 2 s, where early has one"
+expect "compare searches that found nothing later" 3 "$talus" compare late never --tolerance 1 --out compared
+says out.txt "no time at which both have values"
 expect "compare with nothing" 2 "$talus" compare run nowhere
 says err.txt "there is no run directory 'nowhere'"
 expect "plot of nothing" 2 "$talus" plot nowhere

@@ -8,7 +8,7 @@
 
 static const CliOption options_known[] = {
   {"measure", "NAME", "compare this one; again for more (default: all that the runs have in common)"},
-  {"tolerance", "R", "the exit code is 3 if a relative difference is larger, for example 1e-6"},
+  {"tolerance", "R", "the exit code is 3 if a relative difference is larger, for example 1e-6, or a run lacks values"},
   {"legend", "names|keys",
    "runs by their names, or by the keys in which their cases differ (default: keys, where there are two at most)"},
   {"format", "png|svg|pdf", "of the pictures (default: png)"},
@@ -22,8 +22,9 @@ const CliUsage cli_compare_usage = {
     "Sets the histories of runs beside that of the first one: a table of the largest differences, when they are and\n"
     "how large beside the largest value of the first run, the keys in which the resolved cases differ, and a picture\n"
     "of each measure. Runs may have other steps: between its rows a history is taken as linear, and the differences\n"
-    "are those at all times of both within the time that they have in common. The tables are written as\n"
-    "differences.csv and keys.csv, too.",
+    "are those at all times of both within the time that they have in common. A value that one run has there and\n"
+    "another has not (nan) is a difference, too; what a search finds once is compared whenever it was found. The\n"
+    "tables are written as differences.csv and keys.csv, too.",
   .examples =
     "talus compare runs/coarse runs/fine\n"
     "talus compare runs/before runs/after --measure tip --tolerance 1e-6   # for scripts: exit code 3 if they differ",

@@ -1,6 +1,8 @@
 #include "picture/compare/compare_private.h"
+#include <math.h>
 #include <string.h>
 #include "output/directory/run_dir_files.h"
+#include "picture/compare/found.h"
 #include "picture/plot.h"
 
 static PetscErrorCode ColumnOf(const CurveRun *run, PetscInt column, PetscReal *time, PetscReal *value, Curve *curve)
@@ -14,6 +16,31 @@ static PetscErrorCode ColumnOf(const CurveRun *run, PetscInt column, PetscReal *
   PetscFunctionReturn(0);
 }
 
+static PetscBool is_empty(const Curve *c)
+{
+  for (PetscInt i = 0; i < c->n; ++i)
+    if (!PetscIsInfOrNanReal(c->value[i])) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+const Lack *compare_lack(const CompareRow *row)
+{
+  const Lack *a = &row->lacks[0], *b = &row->lacks[1];
+  if (a->any && (!b->any || a->from <= b->from)) return a;
+  return b->any ? b : NULL;
+}
+
+/* Where a run has lost what the other still has, there is no difference at the end. */
+static void compare_curves(const Curve *a, const Curve *b, CompareRow *row)
+{
+  row->found = curve_found_difference(a, b, &row->difference);
+  row->met = (PetscBool)(row->found || curve_difference(a, b, &row->difference));
+  row->empty = (PetscBool)(is_empty(a) && is_empty(b));
+  if (row->found) return;
+  if (curve_lack(a, b, &row->lacks[0]) && row->lacks[0].to > row->difference.to) row->difference.last = NAN;
+  if (curve_lack(b, a, &row->lacks[1]) && row->lacks[1].to > row->difference.to) row->difference.last = NAN;
+}
+
 static PetscErrorCode Compare(const Comparison *c, PetscInt column, CompareRow *row)
 {
   const CurveRun *a = &c->runs[0], *b = &c->runs[row->run];
@@ -25,7 +52,7 @@ static PetscErrorCode Compare(const Comparison *c, PetscInt column, CompareRow *
   PetscCall(PetscMalloc1(2 * (n + m), &values));
   PetscCall(ColumnOf(a, column, values, values + n, &first));
   PetscCall(ColumnOf(b, history_column(&b->history, row->measure), values + 2 * n, values + 2 * n + m, &second));
-  row->met = curve_difference(&first, &second, &row->difference);
+  compare_curves(&first, &second, row);
   PetscCall(PetscFree(values));
   PetscFunctionReturn(0);
 }
@@ -102,6 +129,12 @@ static PetscErrorCode CheckMeasures(const Comparison *c, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+static PetscBool times_meet(const CurveRun *a, const CurveRun *b)
+{
+  return (PetscBool)(a->history.values[0] <= curve_run_value(b, b->history.n_rows - 1, 0) &&
+                     b->history.values[0] <= curve_run_value(a, a->history.n_rows - 1, 0));
+}
+
 /* Is there anything to compare? */
 static void check_rows(const Comparison *c, Diag *diag)
 {
@@ -118,11 +151,12 @@ static void check_rows(const Comparison *c, Diag *diag)
     tell_missing(&c->runs[r], first, diag);
   }
   for (PetscInt i = 0; i < c->n_rows; ++i)
-    if (c->rows[i].met) return;
-  diag_error(diag, NULL, "the runs have no time in common: '%s' goes from %g to %g s, '%s' from %g to %g s",
-             first->folder, (double)first->history.values[0],
-             (double)curve_run_value(first, first->history.n_rows - 1, 0), second->folder,
-             (double)second->history.values[0], (double)curve_run_value(second, second->history.n_rows - 1, 0));
+    if (c->rows[i].met || compare_lack(&c->rows[i])) return;
+  diag_error(diag, NULL, "the runs have no time in common%s: '%s' goes from %g to %g s, '%s' from %g to %g s",
+             times_meet(first, second) ? " at which both have values" : "", first->folder,
+             (double)first->history.values[0], (double)curve_run_value(first, first->history.n_rows - 1, 0),
+             second->folder, (double)second->history.values[0],
+             (double)curve_run_value(second, second->history.n_rows - 1, 0));
 }
 
 /* runs/compare/A-B, if no folder is given. */
@@ -143,7 +177,9 @@ static PetscErrorCode Draw(const Comparison *c, Diag *diag, void (*said)(const c
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < c->n_rows && !diag_errors(diag); ++i) {
     char name[192], path[FILE_PATH + 256];
-    if (!c->rows[i].met || (i > 0 && c->rows[i - 1].met && c->rows[i].measure == c->rows[i - 1].measure)) continue;
+    if (!c->rows[i].met || c->rows[i].found ||
+        (i > 0 && c->rows[i - 1].met && !c->rows[i - 1].found && c->rows[i].measure == c->rows[i - 1].measure))
+      continue;
     snprintf(name, sizeof name, "history_%.150s.%s", c->rows[i].measure, plot_ending(o->format));
     plot_file_name(name);
     snprintf(path, sizeof path, "%s/%s", c->folder, name);
@@ -166,6 +202,13 @@ static PetscErrorCode Report(Comparison *c, FILE *table, Diag *diag, void (*said
   PetscFunctionReturn(0);
 }
 
+/* Beyond all tolerances is what one of the runs has and the other has not. */
+static PetscReal difference_of(const CompareRow *row)
+{
+  if (row->empty) return 0;
+  return row->met && !compare_lack(row) ? row->difference.relative : INFINITY;
+}
+
 PetscErrorCode CompareRuns(const CompareOptions *options, FILE *table, Diag *diag, void (*said)(const char *path),
                            PetscReal *worst)
 {
@@ -179,8 +222,7 @@ PetscErrorCode CompareRuns(const CompareOptions *options, FILE *table, Diag *dia
   if (!diag_errors(diag)) PetscCall(FillRows(&c));
   if (!diag_errors(diag)) check_rows(&c, diag);
   if (!diag_errors(diag)) PetscCall(Report(&c, table, diag, said));
-  for (PetscInt i = 0; i < c.n_rows; ++i)
-    if (c.rows[i].met) *worst = PetscMax(*worst, c.rows[i].difference.relative);
+  for (PetscInt i = 0; i < c.n_rows; ++i) *worst = PetscMax(*worst, difference_of(&c.rows[i]));
   PetscCall(PetscFree(c.rows));
   PetscCall(DifferingKeysFree(&c.keys));
   PetscCall(CurveRunsClose(options->n_runs, &c.runs));

@@ -13,6 +13,7 @@ typedef struct {
 } CompareOptions;
 
 /* Table to `table`, and in the folder differences.csv, keys.csv and a picture of each measure, whose paths go to
- * `said`. *worst: the largest relative difference. What is wrong goes to diag. One process. */
+ * `said`. *worst: the largest relative difference, infinite where one run has values and the other has none. What is
+ * wrong goes to diag. One process. */
 PetscErrorCode CompareRuns(const CompareOptions *options, FILE *table, Diag *diag, void (*said)(const char *path),
                            PetscReal *worst);

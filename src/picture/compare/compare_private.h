@@ -2,6 +2,7 @@
 #pragma once
 #include "picture/compare/compare.h"
 #include "picture/compare/difference.h"
+#include "picture/compare/lack.h"
 #include "picture/curves/keys.h"
 #include "picture/curves/runs.h"
 
@@ -9,8 +10,11 @@
 typedef struct {
   const char *measure, *unit;
   PetscInt run;
-  PetscBool met; /* have they a time in common at which both have values? */
+  PetscBool met;   /* have they a time in common at which both have values? */
+  PetscBool found; /* values that each run finds once, at times of its own: these are compared */
+  PetscBool empty; /* neither of them has a value */
   Difference difference;
+  Lack lacks[2]; /* where the first run has no value and the other one has, and the other way round */
 } CompareRow;
 
 typedef struct {
@@ -21,6 +25,9 @@ typedef struct {
   CompareRow *rows;
   char folder[PETSC_MAX_PATH_LEN];
 } Comparison;
+
+/* The earlier one of the two, NULL if values are there in both runs alike. */
+const Lack *compare_lack(const CompareRow *row);
 
 /* compare_table.c */
 void compare_print(FILE *out, const Comparison *c);

@@ -1,4 +1,5 @@
 /* The tables of a comparison: on the terminal, and for programs. */
+#include <math.h>
 #include <string.h>
 #include "base/text.h"
 #include "input/case_file.h"
@@ -77,6 +78,29 @@ static void print_keys(FILE *out, const Comparison *c)
   fputc('\n', out);
 }
 
+static void print_lack(FILE *out, const Comparison *c, const CompareRow *row, PetscInt lacks)
+{
+  const Lack *lack = &row->lacks[lacks];
+  const CurveRun *without = &c->runs[lacks ? row->run : 0], *with = &c->runs[lacks ? 0 : row->run];
+  if (!lack->any) return;
+  fprintf(out, "'%s' has no value in %s ", row->measure, without->folder);
+  if (lack->to > lack->from) fprintf(out, "from %g to %g s", (double)lack->from, (double)lack->to);
+  else fprintf(out, "at %g s", (double)lack->from);
+  fprintf(out, ", where %s has one\n", with->folder);
+}
+
+/* What the numbers do not say: where there are none, and when those of searches are from. */
+static void print_remarks(FILE *out, const Comparison *c)
+{
+  for (PetscInt i = 0; i < c->n_rows; ++i) {
+    const CompareRow *row = &c->rows[i];
+    if (row->found)
+      fprintf(out, "'%s' of %s: what each run has found, whenever that was (from %g to %g s)\n", row->measure,
+              c->runs[row->run].folder, (double)row->difference.from, (double)row->difference.to);
+    for (PetscInt lacks = 0; lacks < 2; ++lacks) print_lack(out, c, row, lacks);
+  }
+}
+
 void compare_print(FILE *out, const Comparison *c)
 {
   const int width = label_width(c);
@@ -94,8 +118,9 @@ void compare_print(FILE *out, const Comparison *c)
     if (row->met)
       fprintf(out, " %13.6g %13.6g %11.6g %9.2e %13.6g\n", (double)d->size, (double)d->largest, (double)d->at,
               (double)d->relative, (double)d->last);
-    else fputs(" no time at which both have values\n", out);
+    else fputs(row->empty ? " no values\n" : " no time at which both have values\n", out);
   }
+  print_remarks(out, c);
   fputc('\n', out);
   fflush(out);
 }
@@ -112,22 +137,32 @@ static void write_cell(FILE *out, const char *text)
   if (quoted) fputc('"', out);
 }
 
+static void write_number(FILE *out, PetscReal value)
+{
+  char number[32];
+  file_format_real(value, number);
+  fprintf(out, ",%s", number);
+}
+
 static void write_differences(FILE *out, const Comparison *c)
 {
-  fputs("measure,unit,run,from [s],to [s],largest value,difference,at [s],relative,at the end\n", out);
+  fputs("measure,unit,run,from [s],to [s],largest value,difference,at [s],relative,at the end,", out);
+  fputs("missing in,missing from [s]\n", out);
   for (PetscInt i = 0; i < c->n_rows; ++i) {
     const CompareRow *row = &c->rows[i];
     const Difference *d = &row->difference;
     const PetscReal values[] = {d->from, d->to, d->size, d->largest, d->at, d->relative, d->last};
-    if (!row->met) continue;
+    const Lack *lack = compare_lack(row);
+    if (!row->met && !lack) continue;
     write_cell(out, row->measure), fputc(',', out);
     write_cell(out, row->unit), fputc(',', out);
     write_cell(out, c->runs[row->run].folder);
-    for (int k = 0; k < 7; ++k) {
-      char number[32];
-      file_format_real(values[k], number);
-      fprintf(out, ",%s", number);
-    }
+    for (int k = 0; k < 7; ++k) write_number(out, row->met ? values[k] : NAN);
+    fputc(',', out);
+    if (lack) {
+      write_cell(out, c->runs[lack == row->lacks ? 0 : row->run].folder);
+      write_number(out, lack->from);
+    } else fputc(',', out);
     fputc('\n', out);
   }
 }

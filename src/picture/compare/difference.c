@@ -55,6 +55,11 @@ static PetscReal next_time(const Walker *a, const Walker *b, PetscReal end)
   return PetscMin(PetscMin(of_a, of_b), end);
 }
 
+PetscReal difference_relative(const Difference *d)
+{
+  return d->largest == 0 ? 0 : d->size > 0 ? PetscAbsReal(d->largest) / d->size : INFINITY;
+}
+
 PetscBool curve_difference(const Curve *a, const Curve *b, Difference *d)
 {
   Walker in_a, in_b;
@@ -73,6 +78,6 @@ PetscBool curve_difference(const Curve *a, const Curve *b, Difference *d)
     if (PetscAbsReal(d->last) > PetscAbsReal(d->largest)) d->largest = d->last, d->at = t;
     if (t >= d->to) break;
   }
-  d->relative = d->largest == 0 ? 0 : d->size > 0 ? PetscAbsReal(d->largest) / d->size : INFINITY;
+  d->relative = difference_relative(d);
   return PETSC_TRUE;
 }
