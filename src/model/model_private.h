@@ -188,6 +188,8 @@ PetscErrorCode ConvectStep(Model *model, PetscReal dt, EnergyStep *energy, StepR
  * to the times asked for? */
 PetscErrorCode ChooseNextStep(Model *model, PetscBool shortened, PetscBool returning, const StepReport *report);
 
+/* Of a cell: a gap within it is one of the digits in which places are written, or that steps leave. */
+#define CONTACT_HAIR 1e-4
 /* contact/start.c. Collective. Walls of the case, and what of the material touches them at the start. */
 PetscErrorCode WallsStart(Model *model, Diag *diag);
 /* Was the wall there before the stage, as it is now? */
@@ -204,6 +206,13 @@ PetscErrorCode InterfacesSettle(Model *model);
 /* Collective. One of the bodies of interface k has just come: where it was drawn to touch the other one, which has
  * settled since, it does, up to a tenth of a cell. */
 PetscErrorCode InterfaceCloses(Model *model, PetscInt k);
+/* Collective. Interfaces that are bonded from this stage on hold what touches. */
+PetscErrorCode InterfacesBond(Model *model, const Case *from);
+/* contact/bonds.c. Collective. And walls, too. */
+PetscErrorCode BondsBegin(Model *model, const Case *from);
+/* Point p, at a distance `gap` (m) from its partner, is bonded if nothing presses it there (was) but it touches. */
+void contact_bond(const Model *model, PetscInt p, const PetscReal normal[3], PetscReal gap, const PetscReal *was,
+                  PetscReal *kept);
 /* contact/rigid.c. What walls with mass cannot do; energies of theirs, J, the same on all ranks: of motion, and work of
  * weight and loads since the start. */
 void rigid_check(const Model *model, Diag *diag);

@@ -333,4 +333,62 @@ expect "a wall that comes after an equilibrium" 0 "$talus" check comes.yaml --se
 expect "and bodies that come and move" 0 "$talus" check comes.yaml --set initial.equilibrium=direct --set 'loads={gravity: [0, -10]}'
 expect "a wall that is there" 2 "$talus" check comes.yaml --set 'bodies[0].k0=0.5' --set 'loads={gravity: [0, -10]}' --set 'walls[0].absent=false'
 says err.txt "comes.yaml:$(grep -n 'mass:' comes.yaml | cut -d: -f1):" "error: an initial equilibrium knows nothing of walls with mass, as 'ball' is" "until then"
+
+# Bonds that a stage brings hold all that touches as it begins, whatever the last digits of gaps: a block that slid on a
+# wall, or on another block, without weight (it slid on, or was held by a part of its foot, by one stage or another).
+cat >bonds.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: dynamic, step: 0.00390625}
+grid: {box: {min: [1, 0.5], max: [2, 1]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [1, 0.5], max: [2, 1]}}, points_per_cell: 4, material: m, velocity: [3, 0]}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+walls: [{name: w, shape: {half-space: {point: [0, 0.5], normal: [0, 1]}}}]
+measures: {area: {contact: area, of: {wall: w}}, px: {momentum: x, of: {body: b}}}
+output: {history: {steps: 1}}
+stages:
+  - {name: slides}
+  - {name: held, walls: [{name: w, shape: {half-space: {point: [0, 0.5], normal: [0, 1]}}, contact: bonded}]}
+END
+sed -e '/^walls/d' -e '/^stages/,$d' -e 's/^grid.*/grid: {box: {min: [1, 0], max: [2, 1]}, size: 0.25}/' \
+  -e '/^bodies/s/]$/, {name: l, shape: {box: {min: [1, 0], max: [2, 0.5]}}, points_per_cell: 4, material: m}]/' \
+  -e 's/contact: area, of: {wall: w}/interface: area, of: {interface: w}/' bonds.yaml >bonds_bodies.yaml
+cat >>bonds_bodies.yaml <<'END'
+boundary: [{on: {y: 0}, fix: [x, y]}]
+interfaces: [{name: w, between: [b, l]}]
+stages:
+  - {name: slides}
+  - {name: held, interfaces: [{name: w, between: [b, l], contact: bonded}]}
+END
+# After so many steps, which case, on how many ranks; its settings. Of 1 m of foot a step and those before have taken
+# 3/256 m each past the end of the other block.
+bonded() {
+  at=$1 file=$2 ranks=$3
+  shift 3
+  expect "bonds after $at steps, $file, $ranks, $*" 0 on_ranks "$ranks" "$talus" run "$file.yaml" --out bonds --force --quiet "$@"
+  awk -F, -v at="$at" -v past="$([ "$file" = bonds ] && echo 0 || echo 0.01171875)" '
+    $3 == 2 && !n++ && (($4 - 1 + at * past) ^ 2 > 0.015 ^ 2 || !($5 < 1480)) { exit 1 } END { if (!n) exit 1 }' bonds/history.csv ||
+    fail "$name: $(awk -F, '$3 == 2' bonds/history.csv | head -n 1)"
+}
+box='grid.box={min: [0, 0], max: [4, 2]}'
+for at in 4 8 16 17; do
+  end="end: $(awk -v at=$at 'BEGIN { printf "%.8f", at / 256 }'), step: 0.00390625"
+  for file in bonds bonds_bodies; do
+    bonded $at $file 1 --set "analysis={type: dynamic, $end}"
+    bonded $at $file 2 --set "analysis={type: dynamic, $end}"
+    bonded $at $file 1 --set method=gmm --set "analysis={type: dynamic, $end}"
+    bonded $at $file 1 --set method=mpm --set "$box" --set "analysis={type: dynamic, scheme: newmark, transfer: thesis, $end}"
+  done
+  bonded $at bonds 1 --set method=mpm --set "$box" --set "analysis={type: explicit, $end}"
+done
+# What is within 1e-4 of a cell is held and what is farther is not, by a wall that comes, too.
+for absent in false true; do
+  for wall in 0.499985:1 0.49996:0; do
+    expect "bonds at ${wall%:*}, absent before: $absent" 0 "$talus" run bonds.yaml --out bonds --force --quiet --set "walls[0].absent=$absent" \
+      --set 'analysis={type: dynamic, end: 0.015625, step: 0.00390625}' \
+      --set "stages[1].walls=[{name: w, absent: false, shape: {half-space: {point: [0, ${wall%:*}], normal: [0, 1]}}, contact: bonded}]"
+    awk -F, -v area="${wall#*:}" '$3 == 2 && !n++ && ($4 - area) ^ 2 > 1e-6 { exit 1 } END { if (!n) exit 1 }' bonds/history.csv ||
+      fail "$name: $(awk -F, '$3 == 2' bonds/history.csv | head -n 1)"
+  done
+done
 finish

@@ -1,4 +1,5 @@
 /* Interfaces between bodies: what none can be made of, and how bodies stand at the start. */
+#include <string.h>
 #include "model/model_private.h"
 #include "base/math/vector.h"
 #include "grid/cloud/cloud.h"
@@ -9,7 +10,6 @@
 #define THROUGH 0.1
 #define SLIVER 0.03 /* of a cell: and of what is thinner */
 #define CLOSES 0.1  /* of a cell: a wider gap is told of (stage/gaps.c) */
-#define HAIR 1e-4   /* of a cell: a gap within it is one of the digits in which places are written */
 /* surfaces that are fitted have other normals, for which they do not quite fit: what is left would be met again by what
  * comes back there */
 #define FITTINGS 8
@@ -109,7 +109,7 @@ static PetscBool is_fitted(const Model *m, PetscInt k, const SurfacePoint *p, Pe
 {
   const PetscBool bonded = (PetscBool)(m->c->interfaces[k].contact == CONTACT_BONDED);
   const PetscReal through = PetscMin(PetscMax(THROUGH * reach, SLIVER * m->grid->smallest), (1 - THROUGH) * reach);
-  return (PetscBool)(gap > -through && gap < (bonded ? MADE_TO_FIT * p->size : HAIR * m->grid->smallest));
+  return (PetscBool)(gap > -through && gap < (bonded ? MADE_TO_FIT * p->size : CONTACT_HAIR * m->grid->smallest));
 }
 
 /* Surfaces that were made to fit do so but for their polygons: their parts of the first body are made thinner, and
@@ -310,5 +310,39 @@ PetscErrorCode InterfaceCloses(Model *m, PetscInt k)
   }
   for (int i = 0; i < 2; ++i) PetscCall(SurfaceClear(body + i));
   PetscCall(PetscFree(bounds));
+  PetscFunctionReturn(0);
+}
+
+/* Has the stage before bonded its bodies? */
+static PetscBool was_bonded(const InterfaceSpec *now, const Case *from)
+{
+  for (const InterfaceSpec *s = from->interfaces; s < from->interfaces + from->n_interfaces; ++s)
+    if (!strcmp(s->name, now->name)) return (PetscBool)(s->contact == CONTACT_BONDED);
+  return PETSC_FALSE;
+}
+
+PetscErrorCode InterfacesBond(Model *m, const Case *from)
+{
+  const SurfaceInput in = surface_input(m);
+  PetscReal *bounds;
+  PetscMPIInt rank;
+  Surface body[2];
+  SurfacePair pair;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
+  for (PetscInt k = 0; k < m->c->n_interfaces; ++k) {
+    if (m->c->interfaces[k].contact != CONTACT_BONDED || was_bonded(m->c->interfaces + k, from)) continue;
+    PetscCall(PetscMalloc1(6 * m->c->n_bodies, &bounds));
+    PetscCall(SurfaceBounds(&in, m->c->n_bodies, bounds));
+    PetscCall(GatherBoth(m, &in, bounds, k, body));
+    for (const SurfacePoint *p = body[0].point; p < body[0].point + body[0].n; ++p) {
+      if (p->rank != rank || !surface_meet(body, p, body + 1, m->grid->smallest, &pair)) continue;
+      PetscReal *kept = contact_kept(m->points, p->owner, m->c->n_walls + k, contact_sides(m->c), 0);
+      contact_bond(m, p->owner, pair.normal, pair.gap, kept, kept);
+    }
+    for (int i = 0; i < 2; ++i) PetscCall(SurfaceClear(body + i));
+    PetscCall(PetscFree(bounds));
+  }
   PetscFunctionReturn(0);
 }

@@ -136,7 +136,8 @@ void contact_take_section(const Contact *s, const NodalScene *scene, PetscReal s
   c->bond = c->own_bond = divisor > 0 ? adhesion / divisor * c->section : 0;
 }
 
-/* A bonded interface holds what touches at the start, and nothing that comes later. */
+/* A bonded interface holds what touches at the start, or when a stage brings it (that is not open any more then), and
+ * nothing that comes later. */
 static PetscBool is_let_go(const ContactPoint *c, PetscBool first)
 {
   if (c->law.kind != CONTACT_BONDED || c->before != CONTACT_OPEN) return PETSC_FALSE;
