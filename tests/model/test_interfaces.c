@@ -84,9 +84,10 @@ static Model *standing(Bench *b, const Pair *r, PetscReal slope, PetscBool dynam
  * it is as fast as a rigid one; the bodies are not in each other. Steps of changing length. */
 static void slide(const Pair *r)
 {
+  const PetscInt ranks = ranks_of_world();
   Bench b;
   InterfaceSpec joint;
-  const PetscReal mass = in_space(r) ? 250 : 500, end = in_space(r) ? 0.15 : 0.3;
+  const PetscReal mass = in_space(r) ? 250 : 500, end = ranks > 1 ? 0.1 : in_space(r) ? 0.15 : 0.3;
   PetscReal given[2] = {0, 0}, off = 0, deepest = 0;
   Energies e;
   Model *m = standing(&b, r, SLOPE, PETSC_TRUE, &joint);
@@ -108,11 +109,12 @@ static void slide(const Pair *r)
               r->method, r->basis, (int)r->cell, (double)r->friction, r->scheme ? r->scheme : "", r->transfer,
               (double)off, (double)given[1], (double)ratio, (double)found, (double)speed, (double)deepest,
               (double)e.transfer, (double)e.external);
-  CHECK(off <= 1e-8 * given[1] && given[1] > mass, "impulse off by %g of %g", (double)off, (double)given[1]);
+  CHECK(off <= 1e-8 * given[1] && given[1] > -0.8 * mass * b.c.gravity[1] * end, "impulse off by %g of %g", (double)off,
+        (double)given[1]);
   /* the lower block is dented, so that the normal leans a little; where it sticks, hopping, there is less */
   CHECK(ratio < r->friction + 1e-3 && ratio >= 0.96 * r->friction - 1e-3, "ratio %g", (double)ratio);
-  /* in space it is followed half as long, while it hops still: what its momentum comes from is asked above */
-  CHECK(in_space(r) || PetscAbsReal(found - speed) < 0.03 * speed, "speed %g, not %g", (double)found, (double)speed);
+  /* in space and on ranks it is followed less long, while it hops still: what its momentum comes from is asked above */
+  CHECK(end < 0.3 || PetscAbsReal(found - speed) < 0.03 * speed, "speed %g, not %g", (double)found, (double)speed);
   /* the spring is a cell of each body, under weight that comes at once */
   const PetscReal deep = is_explicit(r) ? 5 * 1000 * 9.81 * 0.5 * 0.25 / m->materials[0].wave_modulus : 1e-3 * 0.25;
   CHECK(deepest <= deep, "it is %g m deep in the other", (double)deepest);
@@ -141,8 +143,8 @@ static void test_slides(void **state)
     {"gmm", "lme", CELL_QUADRILATERAL, 0.2, NULL, "thesis"},
     {"gmm", "mls", CELL_QUADRILATERAL, 0, NULL, "thesis"},
     {"gmm", "mls", CELL_TRIANGLE, 0.2, NULL, "thesis"},
-    {"gmm", "lme", CELL_TRIANGLE, 0, NULL, "thesis"},
     {"gmm", "lme", CELL_HEXAHEDRON, 0.2, NULL, "thesis"},
+    {"gmm", "lme", CELL_TRIANGLE, 0, NULL, "thesis"},
   };
   (void)state;
   EACH_OF (k, pairs) slide(&pairs[k]);
@@ -259,8 +261,8 @@ static void test_ranks(void **state)
                                {"mpm", "cell", CELL_QUADRILATERAL, 0.2, "explicit", "thesis"},
                                {"mpm", "gimp", CELL_HEXAHEDRON, 0.2, "explicit", "consistent"},
                                {"gmm", "lme", CELL_TRIANGLE, 0.2, NULL, "thesis"},
-                               {"gmm", "lme", CELL_QUADRILATERAL, 0.2, NULL, "thesis"},
-                               {"gmm", "lme", CELL_TETRAHEDRON, 0.2, NULL, "thesis"}};
+                               {"gmm", "lme", CELL_TETRAHEDRON, 0.2, NULL, "thesis"},
+                               {"gmm", "lme", CELL_QUADRILATERAL, 0.2, NULL, "thesis"}};
   static const PointReal fields[] = {POINT_X, POINT_V, POINT_F, POINT_CONTACT};
   (void)state;
   EACH_OF (k, pairs) {

@@ -50,7 +50,7 @@ says err.txt "warning: no limit was found: what is told is the largest load that
 expect "a search that is ended" 0 "$talus" run block.yaml --out run --force --set 'analysis.until=[{measure: load, above: 30}]'
 says out.txt "by load = it still rises" "warning = no limit was found"
 rm -rf run
-"$talus" run block.yaml --out run --quiet --set grid.size=0.02 --set analysis.limit.step=1e-3 >out.txt 2>err.txt </dev/null &
+"$talus" run block.yaml --out run --quiet --set grid.size=0.025 --set analysis.limit.step=1e-3 >out.txt 2>err.txt </dev/null &
 name="a search that is cut off"
 for i in $(seq 400); do
   [ -s run/history.csv ] && [ "$(wc -l <run/history.csv)" -gt 2 ] && break

@@ -84,7 +84,7 @@ name="killed at first"
 "$talus" sweep block.yaml --over materials.rubber.young=2e5,3e5 --set analysis.end=1000 --measure low --jobs 2 --out k >out.txt 2>err.txt </dev/null &
 sweep=$!
 for i in $(seq 400); do
-  ls k/young=2e5/checkpoint_*.h5 k/young=3e5/checkpoint_*.h5 >ls.txt 2>&1 && break # each of them has one
+  [ -s k/young=2e5/history.csv ] && [ -s k/young=3e5/history.csv ] && break # both are at work
   sleep 0.05
 done
 kill -KILL "$sweep"
