@@ -371,7 +371,7 @@ bonded() {
     fail "$name: $(awk -F, '$3 == 2' bonds/history.csv | head -n 1)"
 }
 box='grid.box={min: [0, 0], max: [4, 2]}'
-for at in 4 8 16 17; do
+for at in 8 17; do
   end="end: $(awk -v at=$at 'BEGIN { printf "%.8f", at / 256 }'), step: 0.00390625"
   for file in bonds bonds_bodies; do
     bonded $at $file 1 --set "analysis={type: dynamic, $end}"
