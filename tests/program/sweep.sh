@@ -84,7 +84,7 @@ name="killed at first"
 "$talus" sweep block.yaml --over materials.rubber.young=2e5,3e5 --set analysis.end=1000 --measure low --jobs 2 --out k >out.txt 2>err.txt </dev/null &
 sweep=$!
 for i in $(seq 400); do
-  [ -s k/young=2e5/history.csv ] && [ -s k/young=3e5/history.csv ] && break # both are at work
+  [ "$(cat k/young=2e5/history.csv 2>/dev/null | wc -l)" -gt 50 ] && [ "$(cat k/young=3e5/history.csv 2>/dev/null | wc -l)" -gt 50 ] && break
   sleep 0.05
 done
 kill -KILL "$sweep"
