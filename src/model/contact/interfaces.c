@@ -286,20 +286,30 @@ PetscErrorCode InterfacesSettle(Model *m)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode InterfaceCloses(Model *m, PetscInt k)
+/* Surfaces of both bodies of one interface. */
+static PetscErrorCode GatherOne(const Model *m, PetscInt k, Surface body[2])
 {
   const SurfaceInput in = surface_input(m);
-  const PetscReal hair = CLOSES * m->grid->smallest;
   PetscReal *bounds;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(6 * m->c->n_bodies, &bounds));
+  PetscCall(SurfaceBounds(&in, m->c->n_bodies, bounds));
+  PetscCall(GatherBoth(m, &in, bounds, k, body));
+  PetscCall(PetscFree(bounds));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode InterfaceCloses(Model *m, PetscInt k)
+{
+  const PetscReal hair = CLOSES * m->grid->smallest;
   PetscMPIInt rank;
   Surface body[2];
   SurfacePair pair;
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
-  PetscCall(PetscMalloc1(6 * m->c->n_bodies, &bounds));
-  PetscCall(SurfaceBounds(&in, m->c->n_bodies, bounds));
-  PetscCall(GatherBoth(m, &in, bounds, k, body));
+  PetscCall(GatherOne(m, k, body));
   for (const SurfacePoint *p = body[0].point; p < body[0].point + body[0].n; ++p) {
     if (p->rank != rank || !surface_meet(body, p, body + 1, m->grid->smallest, &pair)) continue;
     const PetscReal gap = pair.gap - contact_reach_of(m->points, p->owner, pair.normal);
@@ -309,7 +319,6 @@ PetscErrorCode InterfaceCloses(Model *m, PetscInt k)
       contact_kept(m->points, p->owner, m->c->n_walls + k, contact_sides(m->c), 0)[KEPT_STATE] = CONTACT_STICKS;
   }
   for (int i = 0; i < 2; ++i) PetscCall(SurfaceClear(body + i));
-  PetscCall(PetscFree(bounds));
   PetscFunctionReturn(0);
 }
 
@@ -323,8 +332,6 @@ static PetscBool was_bonded(const InterfaceSpec *now, const Case *from)
 
 PetscErrorCode InterfacesBond(Model *m, const Case *from)
 {
-  const SurfaceInput in = surface_input(m);
-  PetscReal *bounds;
   PetscMPIInt rank;
   Surface body[2];
   SurfacePair pair;
@@ -333,16 +340,13 @@ PetscErrorCode InterfacesBond(Model *m, const Case *from)
   PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
   for (PetscInt k = 0; k < m->c->n_interfaces; ++k) {
     if (m->c->interfaces[k].contact != CONTACT_BONDED || was_bonded(m->c->interfaces + k, from)) continue;
-    PetscCall(PetscMalloc1(6 * m->c->n_bodies, &bounds));
-    PetscCall(SurfaceBounds(&in, m->c->n_bodies, bounds));
-    PetscCall(GatherBoth(m, &in, bounds, k, body));
+    PetscCall(GatherOne(m, k, body));
     for (const SurfacePoint *p = body[0].point; p < body[0].point + body[0].n; ++p) {
       if (p->rank != rank || !surface_meet(body, p, body + 1, m->grid->smallest, &pair)) continue;
       PetscReal *kept = contact_kept(m->points, p->owner, m->c->n_walls + k, contact_sides(m->c), 0);
       contact_bond(m, p->owner, pair.normal, pair.gap, kept, kept);
     }
     for (int i = 0; i < 2; ++i) PetscCall(SurfaceClear(body + i));
-    PetscCall(PetscFree(bounds));
   }
   PetscFunctionReturn(0);
 }
