@@ -4,7 +4,7 @@
 
 #define DEEPEST 3 /* mappings around a key that are thought of */
 #define MOST 3    /* ways that are told; more are no help */
-#define ROOM 120  /* characters of a way */
+#define ROOM 160  /* characters of a way */
 
 typedef struct {
   PetscInt n;
@@ -36,24 +36,37 @@ static const char *behind(const SchemaEntry *entry)
   return entry->type == TYPE_TABLE ? "}" : entry->type == TYPE_LIST ? "}]" : "}}";
 }
 
-/* Add the ways to `key` at `depth` mappings below the table, "motion: [{velocity: ..}]", behind `start` and before
- * `end`. */
-static void add_ways(const SchemaReader *r, const SchemaTable *table, const char *key, int depth, const char *start,
-                     const char *end, Ways *ways)
+/* The mappings on the way from a table to a key below it, from outside in. */
+typedef struct {
+  SchemaEntry around[DEEPEST];
+  int n;
+} Around;
+
+/* "motion: [{velocity: ..}]" */
+static void write_way(const Around *a, const char *key, char text[ROOM])
 {
-  char outer[ROOM], inner[ROOM];
+  int used = 0;
+  for (int k = 0; k < a->n; ++k)
+    used += snprintf(text + used, ROOM - used, "%.24s: %s", a->around[k].key, before(&a->around[k]));
+  used += snprintf(text + used, ROOM - used, "%.24s: ..", key);
+  for (int k = a->n - 1; k >= 0; --k) used += snprintf(text + used, ROOM - used, "%s", behind(&a->around[k]));
+}
+
+/* Add the ways to `key` at `depth` mappings below the table. */
+static void add_ways(const SchemaReader *r, const SchemaTable *table, const char *key, int depth, Around *a, Ways *ways)
+{
   SchemaEntry entry;
 
   for (PetscInt i = 0; (entry = schema_entry(table, i)).key; ++i) {
     if (!schema_fits(r, &entry)) continue;
     if (!depth && is_same(key, entry.key)) {
-      if (ways->n < MOST) snprintf(ways->text[ways->n], ROOM, "%.50s%.40s: ..%.20s", start, entry.key, end);
+      if (ways->n < MOST) write_way(a, entry.key, ways->text[ways->n]);
       ++ways->n;
     }
     if (!depth || !has_keys(&entry)) continue;
-    snprintf(outer, ROOM, "%.50s%.40s: %s", start, entry.key, before(&entry));
-    snprintf(inner, ROOM, "%s%.20s", behind(&entry), end);
-    add_ways(r, entry.table, key, depth - 1, outer, inner, ways);
+    a->around[a->n++] = entry;
+    add_ways(r, entry.table, key, depth - 1, a, ways);
+    --a->n;
   }
 }
 
@@ -92,11 +105,12 @@ static PetscBool tell(SchemaReader *r, const char *where, const Ways *ways)
 PetscBool schema_hint_elsewhere(SchemaReader *r, const SchemaTable *table, const char *key)
 {
   Ways below = {0}, longer = {0}, elsewhere = {0};
-  for (int depth = 1; depth <= DEEPEST && !below.n; ++depth) add_ways(r, table, key, depth, "", "", &below);
+  Around none = {.n = 0};
+  for (int depth = 1; depth <= DEEPEST && !below.n; ++depth) add_ways(r, table, key, depth, &none, &below);
   if (tell(r, "write ", &below)) return PETSC_TRUE;
   add_longer(r, table, key, &longer);
   if (tell(r, "write ", &longer)) return PETSC_TRUE;
   for (int depth = 0; depth <= DEEPEST && !elsewhere.n; ++depth)
-    add_ways(r, &schema_case, key, depth, "", "", &elsewhere);
+    add_ways(r, &schema_case, key, depth, &none, &elsewhere);
   return tell(r, "it belongs elsewhere in the file: ", &elsewhere);
 }
