@@ -141,7 +141,7 @@ typedef struct Model {
   PetscInt n_state;
   Grid *grid;
   PetscReal *drawn; /* of fem with stages: n_nodes x dim, where nodes were before any state was taken, m; else NULL */
-  /* while a stage of dynamics begins: n_nodes x 2 dim, of the one before (stage/jump.c); else NULL */
+  /* while a stage of dynamics begins: n_nodes x 2 dim, of the one before (motion/jump.c); else NULL */
   PetscReal *balanced;
   Points *points;
   Points *tracers; /* body = index of the measure */

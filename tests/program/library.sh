@@ -57,6 +57,9 @@ on_ranks() {
   if [ "$ranks" -eq 1 ]; then "$@"; else mpiexec --oversubscribe -n "$ranks" "$@"; fi
 }
 
+# Of variants of one feature each has its turn: sets `ranks` to 1, 2, 3, 1, ...
+turn() { ranks=$((${ranks:-0} % 3 + 1)); }
+
 # The cantilever of the case book on a coarse grid.
 cantilever() {
   cat <<'END'

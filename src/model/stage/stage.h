@@ -21,6 +21,9 @@ PetscErrorCode RenameCheck(const Case *c, const Case *from, PetscBool next, Diag
  * does not fit goes to diag. */
 PetscErrorCode ModelTake(Model *model, Tables *tables, const Case *from, PetscBool next, Diag *diag,
                          Imbalance *imbalance);
+/* Collective. ModelTake of a run's tables, which it may replace. Accelerations that go on jump with what acts, from
+ * the end of that run to the start of this one, where its model can be made again. */
+PetscErrorCode ModelTakeRun(Model *model, Tables **tables, const Case *from, Diag *diag, Imbalance *imbalance);
 /* Collective. The model of the next stage, from the state of *model, which it replaces; on a mistake (in diag)
  * *model stays as it is, but can take no more steps. */
 PetscErrorCode ModelSucceed(const Case *stage, Diag *diag, Model **model, Imbalance *imbalance);

@@ -9,11 +9,11 @@ PetscErrorCode TakePoints(Model *model, const Tables *tables, const Case *from, 
                           char reason[256]);
 /* Was body b of the case not there in `from`? */
 PetscBool body_comes(const Case *c, const Case *from, PetscInt b);
-/* arrive.c. Collective. Points of such bodies, in a mesh whose nodes stood at `drawn` (n_nodes x dim) when they were
- * seeded, fill their cells as they are now; cells that have no room for them are mistakes. */
+/* bodies/arrive.c. Collective. Points of such bodies, in a mesh whose nodes stood at `drawn` (n_nodes x dim) when they
+ * were seeded, fill their cells as they are now; cells that have no room for them are mistakes. */
 PetscErrorCode BodiesArrive(Model *model, const Case *from, const PetscReal *drawn, Diag *diag);
-/* gaps.c. Collective. Warns of such bodies that begin above what they stand on, or in it: it has moved since it was
- * drawn. For grids whose nodes do not move, or do not join bodies. */
+/* bodies/gaps.c. Collective. Warns of such bodies that begin above what they stand on, or in it: it has moved since it
+ * was drawn. For grids whose nodes do not move, or do not join bodies. */
 PetscErrorCode BodiesStand(const Model *model, const Case *from, Diag *diag);
 /* clouds.c. Bodies, tracers and prescribed nodes that a cloud would have to take in or let go: as far as cases
  * tell. */
@@ -50,7 +50,7 @@ PetscBool stands_still(const Model *model);
 PetscErrorCode ResetMotion(Model *model, const Case *from, PetscBool next);
 /* Collective. Accelerations of the balance where nothing moves; those that go on jump with what acts. */
 PetscErrorCode BeginAcceleration(Model *model, const Case *from, const Tables *tables);
-/* jump.c. Do accelerations go on from the stage before, and jump with what acts? */
+/* motion/jump.c. Do accelerations go on from the stage before, and jump with what acts? */
 PetscBool accelerations_go_on(const Case *c, const Case *from);
 /* Collective. Before its tables are made: what balances the last state of the stage before goes to them, or with the
  * nodes of its cloud. */
@@ -58,7 +58,7 @@ PetscErrorCode JumpFrom(Model *before, Tables *tables);
 /* Room for that in the next model, before it takes its state; and the jump, when it has. */
 PetscErrorCode JumpExpect(Model *model);
 PetscErrorCode JumpTo(Model *model, const Tables *tables, char reason[256]);
-/* arrive_motion.c. Collective. Nodes of fem that bodies come to get the velocities that these bring. */
+/* motion/bring.c. Collective. Nodes of fem that bodies come to get the velocities that these bring. */
 PetscErrorCode BodiesBringMotion(Model *model, const Case *from);
 /* Of values of all nodes, those of this rank's nodes that no boundary holds; the others become 0. */
 void keep_free(const Model *model, PetscReal *values);

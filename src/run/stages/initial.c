@@ -71,7 +71,7 @@ static PetscErrorCode Read(Model *m, const Case *other, Diag *diag, Imbalance *i
   if (code) diag_error(diag, "initial.run", "'%s' cannot be used: %s", path, reason);
   if (code) PetscFunctionReturn(0);
   stage_of(tables, other, &stage);
-  PetscCall(ModelTake(m, tables, case_stage(other, stage), PETSC_FALSE, diag, imbalance));
+  PetscCall(ModelTakeRun(m, &tables, case_stage(other, stage), diag, imbalance));
   PetscCall(TablesDestroy(&tables));
   PetscFunctionReturn(0);
 }
