@@ -156,7 +156,7 @@ static void test_against_textbook(void **unused)
     PetscReal p[LAW_MAX_PARAMETERS], e[3], f[9 * BATCH], old[MC_STATE * BATCH], state[MC_STATE * BATCH], tau[6 * BATCH];
     int count[TEXTBOOK_REGIONS] = {0};
     const Law *law = mc_sample_pack(&mc_samples[m], p);
-    for (int s = 0; s < 2500; ++s) {
+    for (int s = 0; s < 1400; ++s) {
       const PetscBool flat = s % 3 == 0;
       for (int k = 0; k < BATCH; ++k) {
         mc_sample_trial(&random, mc_sample_strain(p, mc_samples[m].young), e);

@@ -36,9 +36,15 @@ static inline PetscMPIInt ranks_of_world(void)
   return ranks;
 }
 
-/* Walks through variants. On several ranks they take turns, those at even places on two, the others on three: what
- * ranks spoil they spoil in each of them, and a rank that waits costs more than one that works. */
-#define EACH_VARIANT(k, n) for (size_t k = ranks_of_world() == 3; k<(size_t)(n); k += ranks_of_world()> 1 ? 2 : 1)
+static inline size_t variants_apart(void)
+{
+  const PetscMPIInt ranks = ranks_of_world();
+  return ranks == 3 ? 4 : ranks > 1 ? 2 : 1;
+}
+
+/* Walks through variants. On several ranks they take turns, every other one on two and every fourth, from the second
+ * on, on three: what ranks spoil they spoil in most of them, and a rank that waits costs more than one that works. */
+#define EACH_VARIANT(k, n) for (size_t k = ranks_of_world() == 3; k < (size_t)(n); k += variants_apart())
 #define EACH_OF(k, list) EACH_VARIANT (k, PETSC_STATIC_ARRAY_LENGTH(list))
 /* Triangles, quadrilaterals, tetrahedra, hexahedra up to `last`: the plane and space for any number of ranks. */
 #define EACH_CELL(cell, last) \

@@ -265,6 +265,7 @@ static void test_ranks(void **state)
                                {"gmm", "lme", CELL_QUADRILATERAL, 0.2, NULL, "thesis"}};
   static const PointReal fields[] = {POINT_X, POINT_V, POINT_F, POINT_CONTACT};
   (void)state;
+  if (ranks_of_world() == 1) return;
   EACH_OF (k, pairs) {
     Bench b;
     InterfaceSpec joint;

@@ -38,7 +38,7 @@ done
 says out.txt "by Newton " "by displacement = 1." "by energy " "factor of safety = 1."
 says run/factor.csv "factor,stable,outcome,iterations,increment [m],displacement [m],dissipated [J],work [J]" "1,yes,stands," ",no,"
 says out.txt "formulation = mean-dilatation"
-for ranks in 1 3; do
+for ranks in 2; do
   expect "mixed on $ranks" 0 on_ranks $ranks "$talus" run block.yaml --out run --force --set formulation=mixed
   near "$bears"
 done
@@ -85,9 +85,11 @@ measures:
   upper: {factor_of_safety: upper}
 END
 sed '/^walls:/,/half-space/d; s/^bodies:/&\n  - {name: ground, shape: {box: {min: [0, 0], max: [3, 0.5]}}, material: stone}/; s/^loads:/  stone: {law: neo-hookean, density: 2000, young: 1e8, poisson: 0.2}\nboundary: [{on: {boundary: bottom}, fix: [x, y]}]\ninterfaces: [{name: joint, between: [block, ground], friction_angle: 30}]\n&/; s,method: mpm,method: fem,' plane.yaml >joint.yaml
-for ranks in 1 2 3; do
+for ranks in 1 3; do
   expect "a block on a wall on $ranks" 0 on_ranks $ranks "$talus" run plane.yaml --out run --force
   near 1.58626
+done
+for ranks in 1 2; do
   expect "a block on a body that keeps its strength, on $ranks" 0 on_ranks $ranks "$talus" run joint.yaml --out run --force --set 'analysis.reduction.bodies=[block]'
   near 1.58626
 done
@@ -125,7 +127,7 @@ stands() {
   lacks out.txt "lost its way"
   says err.txt "soil that dilates comes out too strong where the points of a cell share its volume"
 }
-for ranks in 1 2 3; do
+for ranks in 2 3; do
   expect "a soft slope on $ranks" 0 on_ranks $ranks "$talus" run slope.yaml --out run --force --set formulation=mean-dilatation
   stands
 done

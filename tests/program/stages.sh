@@ -217,7 +217,7 @@ stages:
 END
 for method in mpm fem; do
   for ranks in 1 2 3; do
-    [ $method$ranks != fem3 ] || continue
+    [ $method$ranks != fem3 ] && [ $method$ranks != mpm2 ] || continue
     expect "constants change, $method on $ranks" 0 on_ranks $ranks "$talus" run ageing.yaml --out ageing_$method$ranks --set method=$method
     same_answer "$name" ageing_${method}1 ageing_$method$ranks
   done
@@ -275,7 +275,7 @@ stages:
 END
 for method in mpm fem; do
   for ranks in 1 2 3; do
-    [ $method$ranks != fem3 ] || continue
+    [ $method$ranks != fem3 ] && [ $method$ranks != mpm2 ] || continue
     expect "measures change, $method on $ranks" 0 on_ranks $ranks "$talus" run measures.yaml --out measures_$method$ranks --set method=$method
     same_answer "$name" measures_${method}1 measures_$method$ranks
   done
@@ -315,7 +315,7 @@ stages:
   - name: bonded
   - {name: slides, interfaces: [{name: joint, between: [block, base], contact: friction, friction: 0.2}], analysis: {end: 0.2}}
 END
-for ranks in 1 2 3; do
+for ranks in 1 3; do
   expect "an interface changes, on $ranks" 0 on_ranks $ranks "$talus" run slide.yaml --out slide$ranks
   same_answer "$name" slide1 slide$ranks
 done
