@@ -107,7 +107,7 @@ format-check: ## Say which sources `make format` would change
 	@cmake/debian-packages.sh format
 	@clang-format --dry-run -Werror $(SOURCES)
 
-tidy: configure ## Look for mistakes with clang-tidy; silent if there are none. CHANGED=1: in what changed, TIDY_SECONDS=120 long
+tidy: configure ## Look for mistakes with clang-tidy; silent if there are none. CHANGED=1: in what changed, TIDY_SECONDS=60 long
 	@cmake/debian-packages.sh tidy
 	@cmake --build $(BUILD) --target talus_version
 	@cmake/tidy.sh $(BUILD) $(JOBS) $(if $(CHANGED),$(TIDY_SECONDS))
