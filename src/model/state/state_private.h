@@ -9,6 +9,12 @@
 PetscErrorCode StateLostToTables(Model *model, Tables *tables);
 void state_lost_from_tables(Model *model, const Tables *tables, char reason[256]);
 
+/* What an analysis knows besides how things move, where it does; materials have the strength that it left. */
+PetscErrorCode StateAnalysisToTables(Model *model, Tables *tables);
+PetscErrorCode StateAnalysisFromTables(Model *model, const Tables *tables, char reason[256]);
+/* What the state before the first step was like. */
+void state_initial_from_tables(Model *model, const Tables *tables, char reason[256]);
+
 /* Lists of measures. */
 PetscErrorCode StateListsToTables(const Model *model, Tables *tables);
 PetscErrorCode StateListsFromTables(Model *model, const Tables *tables, char reason[256]);
