@@ -36,19 +36,19 @@ static inline PetscMPIInt ranks_of_world(void)
   return ranks;
 }
 
-static inline size_t variants_apart(void)
-{
-  const PetscMPIInt ranks = ranks_of_world();
-  return ranks == 3 ? 4 : ranks > 1 ? 2 : 1;
-}
+/* Do variants take turns on several ranks? TALUS_TEST_ALL=1: each of them runs on all numbers of ranks. */
+static inline PetscBool take_turns(void) { return (PetscBool)(ranks_of_world() > 1 && !getenv("TALUS_TEST_ALL")); }
+
+static inline size_t variants_apart(void) { return !take_turns() ? 1 : ranks_of_world() == 3 ? 4 : 2; }
 
 /* Walks through variants. On several ranks they take turns, every other one on two and every fourth, from the second
  * on, on three: what ranks spoil they spoil in most of them, and a rank that waits costs more than one that works. */
-#define EACH_VARIANT(k, n) for (size_t k = ranks_of_world() == 3; k < (size_t)(n); k += variants_apart())
+#define EACH_VARIANT(k, n) \
+  for (size_t k = take_turns() && ranks_of_world() == 3; k < (size_t)(n); k += variants_apart())
 #define EACH_OF(k, list) EACH_VARIANT (k, PETSC_STATIC_ARRAY_LENGTH(list))
 /* Triangles, quadrilaterals, tetrahedra, hexahedra up to `last`: the plane and space for any number of ranks. */
 #define EACH_CELL(cell, last) \
-  for (CellType cell = (CellType)(ranks_of_world() == 3); cell <= (last); cell += ranks_of_world() > 1 ? 2 : 1)
+  for (CellType cell = (CellType)(take_turns() && ranks_of_world() == 3); cell <= (last); cell += take_turns() ? 2 : 1)
 
 /* A failed check on one rank ends all: the others would wait for it in a collective call for
  * ever. */
@@ -424,15 +424,25 @@ static inline void affine_increment(PetscInt dim, const PetscReal F0[9], const P
   }
 }
 
-#define run_model_tests(argc, argv, tests) run_model_group(argc, argv, tests, sizeof(tests) / sizeof((tests)[0]))
-
-static inline int run_model_group(int argc, char **argv, const struct CMUnitTest *tests, size_t n)
+/* turns: on several ranks every other test. */
+static inline int run_model_some(int argc, char **argv, const struct CMUnitTest *tests, size_t n, PetscBool turns)
 {
+  struct CMUnitTest chosen[32];
   PetscMPIInt rank;
+  size_t k = 0;
+  if (n > PETSC_STATIC_ARRAY_LENGTH(chosen)) return 1;
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   if (rank && !freopen("/dev/null", "w", stdout)) return 1;
-  const int failed = _cmocka_run_group_tests("model", tests, n, NULL, NULL);
+  turns = (PetscBool)(turns && take_turns());
+  for (size_t i = turns && ranks_of_world() == 3; i < n; i += turns ? 2 : 1) chosen[k++] = tests[i];
+  const int failed = _cmocka_run_group_tests("model", chosen, k, NULL, NULL);
   if (failed) MPI_Abort(PETSC_COMM_WORLD, 1);
   return PetscFinalize() ? 1 : failed;
 }
+
+#define run_model_group(argc, argv, tests, n) run_model_some(argc, argv, tests, n, PETSC_FALSE)
+#define run_model_tests(argc, argv, tests) run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests))
+/* Every other test on two ranks, the others on three. */
+#define run_model_tests_in_turns(argc, argv, tests) \
+  run_model_some(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests), PETSC_TRUE)

@@ -315,5 +315,5 @@ int main(int argc, char **argv)
                                      cmocka_unit_test(test_inverted),    cmocka_unit_test(test_compression),
                                      cmocka_unit_test(test_grains),      cmocka_unit_test(test_lame),
                                      cmocka_unit_test(test_thick_tube),  cmocka_unit_test(test_pressed_tube)};
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

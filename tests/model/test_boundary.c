@@ -349,10 +349,10 @@ static void test_refused(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_balance),        cmocka_unit_test(test_impulse),    cmocka_unit_test(test_turned_frame),
-    cmocka_unit_test(test_turned_body),    cmocka_unit_test(test_rotation),   cmocka_unit_test(test_velocity_table),
-    cmocka_unit_test(test_shared_corners), cmocka_unit_test(test_load_moves), cmocka_unit_test(test_geostatic),
-    cmocka_unit_test(test_refused),
+    cmocka_unit_test(test_impulse),    cmocka_unit_test(test_turned_frame),   cmocka_unit_test(test_turned_body),
+    cmocka_unit_test(test_rotation),   cmocka_unit_test(test_velocity_table), cmocka_unit_test(test_shared_corners),
+    cmocka_unit_test(test_load_moves), cmocka_unit_test(test_geostatic),      cmocka_unit_test(test_refused),
+    cmocka_unit_test(test_balance),
   };
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

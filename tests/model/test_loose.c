@@ -135,5 +135,5 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_column_falls_back),
     cmocka_unit_test(test_newton),
   };
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

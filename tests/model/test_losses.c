@@ -300,5 +300,5 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_load_goes_with_its_body),
     cmocka_unit_test(test_full_grid_is_told),
   };
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

@@ -521,7 +521,6 @@ static void test_roughness(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_surface_of_a_triangle),
     cmocka_unit_test(test_inner_extent),
     cmocka_unit_test(test_mirrored_extent),
     cmocka_unit_test(test_advance),
@@ -536,6 +535,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_removed_points),
     cmocka_unit_test(test_ranks_agree),
     cmocka_unit_test(test_roughness),
+    cmocka_unit_test(test_surface_of_a_triangle),
   };
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

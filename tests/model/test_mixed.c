@@ -569,5 +569,5 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_momentum), cmocka_unit_test(test_ranks),          cmocka_unit_test(test_geostatic),
     cmocka_unit_test(test_refused),  cmocka_unit_test(test_locking),
   };
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

@@ -109,7 +109,10 @@ static void test_first_entry_holds(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_carried), cmocka_unit_test(test_pressed),
-                                     cmocka_unit_test(test_first_entry_holds)};
-  return run_model_tests(argc, argv, tests);
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_pressed),
+    cmocka_unit_test(test_carried),
+    cmocka_unit_test(test_first_entry_holds),
+  };
+  return run_model_tests_in_turns(argc, argv, tests);
 }

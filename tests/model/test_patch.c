@@ -232,5 +232,5 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_hexahedra),     cmocka_unit_test(test_mixed_cells),    cmocka_unit_test(test_traction),
     cmocka_unit_test(test_shared_volume),
   };
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

@@ -333,5 +333,5 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_half_planes), cmocka_unit_test(test_images),     cmocka_unit_test(test_disc),
     cmocka_unit_test(test_balls),       cmocka_unit_test(test_rate),       cmocka_unit_test(test_inclination),
     cmocka_unit_test(test_elevation),   cmocka_unit_test(test_avalanches), cmocka_unit_test(test_nowhere)};
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

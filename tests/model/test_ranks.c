@@ -185,10 +185,10 @@ static void test_shared_volume(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_cantilever),
     cmocka_unit_test(test_thrown_block),
     cmocka_unit_test(test_swaying_block),
     cmocka_unit_test(test_shared_volume),
+    cmocka_unit_test(test_cantilever),
   };
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

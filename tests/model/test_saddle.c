@@ -189,5 +189,5 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_solvers), cmocka_unit_test(test_solver_ranks),
                                      cmocka_unit_test(test_multigrid), cmocka_unit_test(test_empty_cells),
                                      cmocka_unit_test(test_forcing)};
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

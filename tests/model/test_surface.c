@@ -340,5 +340,5 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_closed), cmocka_unit_test(test_selected), cmocka_unit_test(test_wedge),
     cmocka_unit_test(test_ball),   cmocka_unit_test(test_blown),
   };
-  return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
+  return run_model_tests_in_turns(argc, argv, tests);
 }

@@ -290,5 +290,5 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_held),   cmocka_unit_test(test_parts),         cmocka_unit_test(test_refused),
     cmocka_unit_test(test_leaves), cmocka_unit_test(test_pressed_round),
   };
-  return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
+  return run_model_tests_in_turns(argc, argv, tests);
 }

@@ -210,7 +210,10 @@ static void test_left_alone(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_rigid), cmocka_unit_test(test_levels),
-                                     cmocka_unit_test(test_left_alone)};
-  return run_model_tests(argc, argv, tests);
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_levels),
+    cmocka_unit_test(test_rigid),
+    cmocka_unit_test(test_left_alone),
+  };
+  return run_model_tests_in_turns(argc, argv, tests);
 }
