@@ -146,7 +146,7 @@ static void tell_lost_way(const Model *m, Diag *diag)
                "fails: %s",
                case_seeks(&m->c->analysis) ? "a factor of safety or a limit load of half and less"
                                            : "what yields may come out far too soft, or a step give up");
-  diag_hint(diag, "take `formulation: mean-dilatation`%s, or `dilatancy_angle: 0`",
+  diag_hint(diag, "take `formulation: mean-dilatation`%s, or `dilatancy_angle: 0` where no soil is pulled",
             !only_simplices(m) ? ""
             : m->dim == 2      ? " and quadrilaterals (of Gmsh: `Mesh.RecombineAll = 1;`)"
                                : " and hexahedra");
