@@ -155,6 +155,8 @@ static PetscReal reach_at_end(const Contact *s, const ContactPoint *c, const Nod
   const PetscReal first = scene->points->real[POINT_REACH][c->owner];
   PetscReal n[3], reach = c->ahead;
   normal_at_end(s, c, scene->du, n);
+  if (c->state == CONTACT_OPEN && c->edge) /* which turns the normal as it goes past, and not the material */
+    reach = PetscMax(reach, PetscMin(c->reach, contact_reach_of(scene->points, c->owner, n)));
   if (c->wall >= s->n_walls) reach *= n[0] * c->normal[0] + n[1] * c->normal[1] + n[2] * c->normal[2];
   for (PetscInt e = c->first; e < c->first + c->own; ++e)
     for (PetscInt d = 0; d < s->dim; ++d) reach -= n[d] * s->lead[e] * scene->du[s->node[e] * s->dim + d];

@@ -20,6 +20,7 @@ typedef struct {
   PetscInt owner; /* the material point, or the node */
   PetscInt wall;  /* or the number of walls + the interface */
   int side;
+  PetscBool edge;      /* is it an edge or a corner of the wall that its owner sees at the start? */
   PetscInt slot_kept;  /* which of the sides that its owner remembers of the partner this is */
   PetscInt anchor;     /* in a corner of the wall: this side of it, of Contact; else -1: what is nearest */
   PetscInt first, n;   /* nodes that carry it: node[first] .. of Contact; the first of them, */

@@ -5,6 +5,7 @@
 #define BENDING 27     /* most nodes of a point whose functions bend */
 #define TOUCHES 1e-6   /* of a cell: within this what had no force at the start of the step touches */
 #define STIFF 0.02     /* strain up to which what may yield moves as a body */
+#define EDGE 1e-6      /* of its curvature that an edge may lack */
 #define ROUND_OFF 1e-9 /* by how much more a corner is farther away than its sides */
 
 /* Thickness of the material point's part of the body towards n: planes of the undeformed body along
@@ -228,6 +229,13 @@ static void take_lead(const NodalScene *scene, PetscInt p, PetscInt nn, const Pe
   }
 }
 
+/* Around an edge the distance bends by its inverse, and by less around all that is round. */
+static PetscBool is_edge(const WallPlace *place)
+{
+  const PetscReal bend = place->curvature[0] + place->curvature[4] + place->curvature[8];
+  return (PetscBool)(place->gap > 0 && bend * place->gap > 1 - EDGE);
+}
+
 /* The surface of a point, `at` in group g of the support, before one side of wall k: slot and kept are those of that
  * side. */
 static PetscErrorCode MeetSide(Contact *s, const NodalScene *scene, PetscInt g, PetscInt at, PetscInt k,
@@ -251,6 +259,7 @@ static PetscErrorCode MeetSide(Contact *s, const NodalScene *scene, PetscInt g, 
   c->stiffer = material_confined(material) / material->wave_modulus;
   contact_take_law(s, scene, c);
   contact_remember(c, dim, kept, place.normal);
+  c->edge = is_edge(&place);
   place.gap -= reach;
   if (contact_passes(s, c, place.gap, scene->first)) {
     --s->n;

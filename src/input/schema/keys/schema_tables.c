@@ -182,8 +182,8 @@ static const SchemaTable analysis = {.name = "analysis",
 static const SchemaEntry material_entries[] = {
   KEY("law", WORD_TEXT, NULL, "the constitutive law, see `talus list laws`", .registry = (const void *const *)laws,
       REQUIRED, AT(MaterialSpec, law)),
-  KEY("density", NUMBER, "kg/m3", "mass per volume of the undeformed body", REQUIRED, ABOVE(0),
-      AT(MaterialSpec, density)),
+  KEY("density", NUMBER, "kg/m3", "mass per volume of the body as it begins, with the stress that it has then",
+      REQUIRED, ABOVE(0), AT(MaterialSpec, density)),
   KEY("amplitude", AMPLITUDES, NULL,
       "factors on parameters over time: {cohesion: [[0, 1], [10, 0.5]]}, linear between, density and elastic constants "
       "too; of a stage: times count from its start. Stresses stay when elastic constants change",

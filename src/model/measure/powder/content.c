@@ -32,8 +32,9 @@ const Measure measure_volume = {
   .takes = MEASURE_WORD,
   .number = {.unit = "m3", .help = "volume (per m of thickness in plane strain, of the full circle in axisymmetry)"},
   .words = (const MeasureNumber *const[]){
-    WORD("undeformed", "that the material had at the start: its mass over its density then", .in = PETSC_TRUE,
-         .value = Content, .which = UNDEFORMED),
+    WORD("undeformed",
+         "that the material has without stress; of laws that know no such state (modified Cam clay), at the start",
+         .in = PETSC_TRUE, .value = Content, .which = UNDEFORMED),
     WORD("current", "that it has now, as its law sees it: of points that flew apart more than they fill",
          .in = PETSC_TRUE, .value = Content, .which = CURRENT),
     NULL}};
