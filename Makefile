@@ -23,8 +23,8 @@ export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
 build: configure ## Build the program, build/talus, its library and manual (the default). PORTABLE=1: for any machine
 	@cmake --build $(BUILD) --parallel $(JOBS)
 
-tests: configure ## Build the tests and benchmarks, too
-	@cmake --build $(BUILD) --parallel $(JOBS) --target all tests bench
+tests: configure ## Build the tests, too
+	@cmake --build $(BUILD) --parallel $(JOBS) --target all tests
 
 help: ## This list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)

@@ -1,6 +1,7 @@
 #!/bin/bash
-# run-checks.sh BUILD: what a change must pass besides the tests: the format, clang-tidy on what changed, the site of the
-# documentation, the fast tests under sanitizers. The last line is `N passed, N failed`, kept in BUILD/check-summary.txt too.
+# run-checks.sh BUILD: what a change must pass besides the tests: the format, the site of the documentation, clang-tidy on
+# what changed, that the benchmarks build, the fast tests under sanitizers. The last line is `N passed, N failed`, kept in
+# BUILD/check-summary.txt too.
 set -u
 build=$1 passed=0 failed=0
 mkdir -p "$build"
@@ -34,6 +35,12 @@ for check in format-check docs 'tidy CHANGED=1'; do
   make $check BUILD="$build" TIDY_SECONDS=$((left < 60 ? left : 60))
   count "make $check" $? $SECONDS
 done
+
+if [ "$(spent)" -lt 840 ]; then
+  SECONDS=0
+  cmake --build "$build" --target bench >/dev/null
+  count 'benchmarks build' $? $SECONDS
+fi
 
 if [ "$(spent)" -gt 500 ]; then # these take 300 to 400
   echo "make test-sanitize FAST=1: left out, $(spent) s are spent"

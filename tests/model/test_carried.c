@@ -338,5 +338,5 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_explicit), cmocka_unit_test(test_turns),   cmocka_unit_test(test_off_the_lines),
     cmocka_unit_test(test_ring),
   };
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

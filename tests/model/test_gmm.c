@@ -555,5 +555,5 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_obstacles),    cmocka_unit_test(test_solvers), cmocka_unit_test(test_heap),
     cmocka_unit_test(test_given_stress), cmocka_unit_test(test_beyond),  cmocka_unit_test(test_along),
   };
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

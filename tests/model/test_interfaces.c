@@ -343,5 +343,5 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_ranks),  cmocka_unit_test(test_resumed), cmocka_unit_test(test_refused),
     cmocka_unit_test(test_area),
   };
-  return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
+  return run_model_tests_in_turns(argc, argv, tests);
 }

@@ -288,5 +288,5 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_volume), cmocka_unit_test(test_steps),    cmocka_unit_test(test_energy),
     cmocka_unit_test(test_bar),    cmocka_unit_test(test_explicit), cmocka_unit_test(test_kick),
   };
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

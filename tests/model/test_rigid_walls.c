@@ -341,5 +341,5 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_turns),   cmocka_unit_test(test_stands),     cmocka_unit_test(test_floats),
     cmocka_unit_test(test_endless), cmocka_unit_test(test_centreless), cmocka_unit_test(test_carries),
   };
-  return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
+  return run_model_tests_in_turns(argc, argv, tests);
 }

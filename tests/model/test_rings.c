@@ -544,5 +544,5 @@ int main(int argc, char **argv)
                                      cmocka_unit_test(test_surface),
                                      cmocka_unit_test(test_cloud),
                                      cmocka_unit_test(test_varying)};
-  return run_model_tests(argc, argv, tests);
+  return run_model_tests_in_turns(argc, argv, tests);
 }

@@ -343,5 +343,5 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_flows),  cmocka_unit_test(test_through), cmocka_unit_test(test_dent),
     cmocka_unit_test(test_smooth), cmocka_unit_test(test_narrow),
   };
-  return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
+  return run_model_tests_in_turns(argc, argv, tests);
 }
