@@ -407,4 +407,12 @@ for method in gmm fem; do
   awk -F, 'END { exit !(($3 - 100)^2 < 1e-10) }' goes/history.csv || fail "$name: $(tail -n 1 goes/history.csv)"
 done
 
+# A run whose case was changed since gives no jump, and says so; one of a cloud is refused.
+for method in fem gmm; do
+  [ $method = fem ] || expect "the run once more" 0 "$talus" run flight.yaml --force --quiet --out flight --set method=$method
+  sed -i 's/^measures:.*/&\n  another: {momentum: y}/' flight/case.yaml
+  expect "a run that was changed, $method" $([ $method = fem ] && echo 0 || echo 2) "$talus" run goes.yaml --force --quiet --out goes --set method=$method
+  says err.txt "the measures of the case are not those of the run"
+done
+
 finish

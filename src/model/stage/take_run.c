@@ -13,23 +13,23 @@ static PetscBool acts_by_case(const Model *m, const Case *from)
   return PETSC_TRUE;
 }
 
-/* The model of that run, and its tables once more, with what balances it; NULL: it cannot be made any more. */
-static PetscErrorCode Revive(const Case *from, Tables **tables, MPI_Comm comm, Model **before)
+/* The model of that run where its tables say; NULL: it cannot be made any more, or is none of theirs (its case was
+ * changed, its mesh has gone). */
+static PetscErrorCode Revive(MPI_Comm comm, const Case *from, Tables *tables, Diag *diag, Model **before)
 {
-  char reason[256] = "";
+  char reason[256] = "no model can be made of its case";
   Diag *unheard;
 
   PetscFunctionBeginUser;
   PetscCall(DiagCreate(&unheard));
   PetscCall(ModelCreate(comm, from, unheard, before));
   PetscCall(DiagDestroy(&unheard));
-  if (!*before) PetscFunctionReturn(0);
-  PetscCall(ModelFromTables(*before, *tables, reason));
-  PetscCheck(!reason[0], comm, PETSC_ERR_FILE_UNEXPECTED, "%s", reason);
-  PetscCall(TablesDestroy(tables));
-  PetscCall(TablesCreate(tables));
-  PetscCall(JumpFrom(*before, *tables));
-  PetscCall(ModelToTables(*before, *tables)); /* some stand over its arrays */
+  if (*before) PetscCall(ModelFromTables(*before, tables, reason));
+  if (!reason[0]) PetscFunctionReturn(0);
+  if (*before && (*before)->method->clouds) /* whose tables may be on their way */
+    diag_error(diag, "initial.run", "the state cannot be taken over: %s", reason);
+  else diag_warning(diag, "initial.run", "loads that are others than in that run act half a step late: %s", reason);
+  if (*before) PetscCall(ModelDestroy(before));
   PetscFunctionReturn(0);
 }
 
@@ -37,12 +37,20 @@ PetscErrorCode ModelTakeRun(Model *m, Tables **tables, const Case *from, Diag *d
 {
   Model *before = NULL;
   char other[256] = "";
+  const PetscInt errors = diag_errors(diag);
 
   PetscFunctionBeginUser;
   state_check_grid(m, *tables, other);
   if (!other[0] && !strcmp(m->c->method, from->method) && accelerations_go_on(m->c, from) && acts_by_case(m, from))
-    PetscCall(Revive(from, tables, m->comm, &before));
-  if (before) PetscCall(JumpExpect(m));
+    PetscCall(Revive(m->comm, from, *tables, diag, &before));
+  if (diag_errors(diag) > errors) PetscFunctionReturn(0);
+  if (before) {
+    PetscCall(JumpExpect(m));
+    PetscCall(TablesDestroy(tables));
+    PetscCall(TablesCreate(tables));
+    PetscCall(JumpFrom(before, *tables));
+    PetscCall(ModelToTables(before, *tables)); /* some stand over its arrays */
+  }
   PetscCall(ModelTake(m, *tables, from, PETSC_FALSE, diag, imbalance));
   if (before) PetscCall(ModelDestroy(&before));
   PetscFunctionReturn(0);
