@@ -229,7 +229,7 @@ static void take_lead(const NodalScene *scene, PetscInt p, PetscInt nn, const Pe
   }
 }
 
-/* Around an edge the distance bends by its inverse, and by less around all that is round. */
+/* Around an edge the distance bends by its inverse, and by less around all that is round, and larger than it. */
 static PetscBool is_edge(const WallPlace *place)
 {
   const PetscReal bend = place->curvature[0] + place->curvature[4] + place->curvature[8];
