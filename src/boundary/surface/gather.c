@@ -120,6 +120,16 @@ static void make_piece(const Gather *g, PetscReal along[2][3], FacePoint *p)
     for (int d = 0; d < 3; ++d) p->edge[k][d] = along[k][d];
 }
 
+/* Is there anything? The end of a surface of the next cell is as wide as round-off or the selector's tolerance, and what
+ * lies on the axis of rings has no area. */
+static PetscBool is_something(const Gather *g, PetscReal size, const PieceSum *sum)
+{
+  const PetscReal whole = PetscPowReal(size, (PetscReal)(g->body->grid->dim - 1));
+  if (!(sum->area > STEP * whole)) return PETSC_FALSE;
+  if (!g->pieces || !g->pieces->hoop) return PETSC_TRUE;
+  return (PetscBool)(sum->origin[0] * sum->area + sum->first[0] > STEP * size * sum->area);
+}
+
 /* The sum as points: equal areas, a deviation to both sides of the middle, or so far that pieces beside each other have
  * that; vectors differ as much as their moments along the piece say. */
 static PetscErrorCode Emit(Gather *g, PetscInt cell, PetscReal size, const PieceSum *sum)
@@ -129,8 +139,7 @@ static PetscErrorCode Emit(Gather *g, PetscInt cell, PetscReal size, const Piece
   PetscReal mid[3], C[6], to[2][3], dual[2][3], turn[2][3], x[CELL_MAX_NODES * 3];
 
   PetscFunctionBeginUser;
-  /* the end of a surface of the next cell, as wide as round-off or the selector's tolerance */
-  if (!(sum->area > STEP * PetscPowReal(size, (PetscReal)along))) PetscFunctionReturn(0);
+  if (!is_something(g, size, sum)) PetscFunctionReturn(0);
   PetscCall(Reserve(g));
   spread_of(sum, mid, C);
   if (g->pieces) find_edges(C, to);

@@ -171,5 +171,6 @@ const char *newton_reason(SNESConvergedReason reason, LawStatus status)
   case SNES_DIVERGED_DTOL: return "the residual grew without bound";
   default: break;
   }
-  return status == LAW_OK ? "no convergence" : law_status_text(status);
+  if (status != LAW_OK) return law_status_text(status);
+  return reason == SNES_DIVERGED_FNORM_NAN ? "a force is not a finite number" : "no convergence";
 }
