@@ -253,4 +253,25 @@ for turned in 0 1 10 17 30 45 80; do # 0.8 x 0.4 m on 1.4 x 0.4 m, with the midd
   done
 done
 
+# --- what is pressed and rests in dynamics touches as in statics, also the points that bear nothing ---
+cat >round.yaml <<'END'
+kinematics: axisymmetric
+method: mpm
+analysis: {type: dynamic, end: 1, step: 0.01, damping: 40}
+grid: {box: {min: [0, 0], max: [1, 1.2]}, size: 0.05}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{on: {x: 0}, fix: [x]}, {on: {x: 1}, fix: [x]}, {on: {y: 0}, fix: [y]}]
+walls: [{name: ball, shape: {circle: {centre: [0, 1.5], radius: 0.5}}, motion: [{displacement: {y: -0.02}, amplitude: [[0, 0], [0.5, 1], [9, 1]]}]}]
+measures: {force: {wall_force: y, of: {wall: ball}}, area: {contact: area, of: {wall: ball}}, peak: {contact: peak_pressure, of: {wall: ball}}}
+END
+for method in mpm gmm; do
+  expect "$method pressed in statics" 0 "$talus" run round.yaml --set method=$method --set 'analysis={type: static, end: 0.5, steps: 8}' --out run --force --quiet
+  force=$(last 3) area=$(last 4) peak=$(last 5)
+  expect "$method at rest" 0 "$talus" run round.yaml --set method=$method --out run --force --quiet
+  near force "$(last 3)" "$force" 5e-3
+  near area "$(last 4)" "$area" 5e-3
+  near peak "$(last 5)" "$peak" 0.06
+done
+
 finish

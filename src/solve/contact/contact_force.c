@@ -197,6 +197,7 @@ PetscErrorCode ContactAssemble(void *data, const NodalScene *scene, const NodalO
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     if (is_out_of_reach(s, c, motion)) {
       stay_open(c);
+      c->gap = c->open; /* within what it moves */
       continue;
     }
     const PetscBool meets = contact_meets(s, c, scene, out->system ? K : NULL);
