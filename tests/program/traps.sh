@@ -519,4 +519,20 @@ for ranks in 1 2; do
   awk -F, 'END { exit !(($5 / 2614.19441 - 1) ^ 2 < 1e-16 && $3 > $4 && $3 < 1.1 * $4) }' triangle/history.csv || fail "$name: $(tail -n 1 triangle/history.csv)"
 done
 
+# --- a pressed surface that moves, where stress beside it is and is not borne by the nodes that bear the load ---
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 4}
+grid: {box: {min: [0, 0], max: [1.5, 1.5]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{on: {boundary: left}, fix: [x]}, {on: {boundary: bottom}, fix: [y]}]
+loads: {pressures: [{on: {body: b, y: 1}, value: 3e5}]}
+END
+expect "a pressed block" 0 "$talus" run case.yaml --out pressed --force --quiet
+! grep -q "a loaded surface has moved" err.txt || fail "$name: $(cat err.txt)"
+expect "a pressed block of the mixed formulation" 0 "$talus" run case.yaml --set formulation=mixed --out pressed --force --quiet
+grep -q "a loaded surface has moved by .* cells: with the mixed formulation" err.txt || fail "$name: does not warn"
+
 finish

@@ -165,7 +165,8 @@ static const MeasureNumber *const words[] = {
   TRACTION("pressure", "mean of the normal traction over what touches the wall (in a shape); 0 where nothing does",
            PRESSURE),
   TRACTION("peak_pressure", "the largest normal traction, of values smoothed over a cell", PEAK),
-  TRACTION("shear", "the mean of the tangential traction, its size", SHEAR),
+  TRACTION("shear", "size of the mean tangential traction: opposite directions cancel, as under what turns on its end",
+           SHEAR),
   NULL,
 };
 

@@ -213,13 +213,19 @@ static PetscErrorCode WarnOfCrowd(const Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-/* Of the carriers of surfaces that are points, and see what points of no extent do: how far the farthest has come, in
- * cells. */
-static PetscReal way_of_points(const Model *m)
+/* Does stress stand where loads on a surface are borne? Not where these are points, and see what points of no extent
+ * do, nor in the mixed formulation, whose nodes at corners follow nobody. */
+static PetscBool bears_where_loaded(const Model *m)
+{
+  return (PetscBool)(loads_have_pieces(m->loads) && !case_is_mixed(m->c));
+}
+
+/* Of the carriers of surfaces: how far the farthest has come, in cells. */
+static PetscReal way_of_carriers(const Model *m)
 {
   const Points *carriers = m->loads->carriers;
   PetscReal most = 0;
-  for (PetscInt p = 0; p < carriers->n && !loads_have_pieces(m->loads); ++p)
+  for (PetscInt p = 0; p < carriers->n; ++p)
     for (PetscInt d = 0; d < m->dim && m->c->loads[carriers->body[p]].kind != LOAD_POINT; ++d)
       most = PetscMax(most, PetscAbsReal(point_real(carriers, POINT_U, p)[d]) / m->grid->smallest);
   return most;
@@ -232,17 +238,18 @@ static PetscErrorCode WarnOfMovedLoads(const Model *m, Diag *diag)
   PetscReal local, most;
 
   PetscFunctionBeginUser;
-  if (!m->method->restores_grid) PetscFunctionReturn(0);
-  local = way_of_points(m);
+  if (!m->method->restores_grid || bears_where_loaded(m)) PetscFunctionReturn(0);
+  local = way_of_carriers(m);
   PetscCall(MPIU_Allreduce(&local, &most, 1, MPIU_REAL, MPIU_MAX, m->comm));
   if (!(most > (materials_yield(m->c->n_materials, m->materials) ? WAY_ALLOWED_YIELDING : WAY_ALLOWED)))
     PetscFunctionReturn(0);
-  diag_warning(
-    diag, "loads",
-    "a loaded surface has moved by %.2g cells: with these shape functions corners and stresses beside it may be "
-    "wrong by several per cent, with linear ones by any amount",
-    (double)most);
-  diag_hint(diag, "`basis: {gimp: {}}` on a box, or compare with fem (docs/theory.md, section 67)");
+  diag_warning(diag, "loads", "a loaded surface has moved by %.2g cells: with %s", (double)most,
+               loads_have_pieces(m->loads)
+                 ? "the mixed formulation stresses of points beside it may be wrong by a tenth of the load"
+                 : "these shape functions corners and stresses beside it may be wrong by several per cent, with "
+                   "linear ones by any amount");
+  diag_hint(diag, "%s, or compare with fem (docs/theory.md, section 67)",
+            case_is_mixed(m->c) ? "`formulation: displacement`" : "`basis: {gimp: {}}` on a box");
   PetscFunctionReturn(0);
 }
 
