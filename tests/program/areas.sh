@@ -274,4 +274,30 @@ for method in mpm gmm; do
   near peak "$(last 5)" "$peak" 0.06
 done
 
+# --- a body that lay along lines of the grid keeps its foot while its floor turns it, and adhesion what it bears ---
+cat >turns.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 5}
+grid: {box: {min: [0, 0], max: [4, 3]}, size: 0.125}
+bodies: [{name: b, shape: {box: {min: [1.5, 1], max: [2.5, 1.25]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
+walls: [{name: w, contact: bonded, shape: {half-space: {point: [2, 1], normal: [0, 1]}}, motion: [{rotation: {centre: [2, 1], rate: -0.5}, amplitude: [[0, 1], [1, 1]]}]}]
+loads: {gravity: [0, -10], gravity_amplitude: [[0, 1], [1, 1]]}
+measures: {area: {contact: area, of: {wall: w}}, mean: {contact: pressure, of: {wall: w}}}
+END
+expect "turned by its floor" 0 "$talus" run turns.yaml --out run --force --quiet
+near area "$(last 3)" 1 1e-3
+near mean "$(last 4)" 2193.95 1e-3 # 2500 cos 0.5
+expect "turned by its floor in explicit steps" 0 "$talus" run turns.yaml --set 'analysis={type: explicit, end: 1, step: 0.02, damping: 20}' --out run --force --quiet
+near area "$(last 3)" 1 2e-3
+sed -e 's/plane-strain/3d/; s/min: \[0, 0\], max: \[4, 3\]/min: [0, 0, 0], max: [4, 3, 0.75]/; s/min: \[1.5, 1\], max: \[2.5, 1.25\]/min: [1.5, 1, 0.125], max: [2.5, 1.25, 0.625]/' \
+  -e 's/point: \[2, 1\], normal: \[0, 1\]/point: [2, 1, 0], normal: [0, 1, 0]/; s/centre: \[2, 1\]/centre: [2, 1, 0], axis: [0, 0, 1]/; s/gravity: \[0, -10\]/gravity: [0, -10, 0]/' turns.yaml >case.yaml
+expect "turned by its floor in space" 0 "$talus" run case.yaml --out run --force --quiet
+near area "$(last 3)" 0.5 1e-3
+# it slides where 10 sin t = 0.2 x 10 cos t + 3, at 0.496
+expect "tilted" 1 "$talus" run turns.yaml --set 'walls[0].contact=friction' --set 'walls[0].friction=0.2' --set 'walls[0].adhesion=750' \
+  --set 'walls[0].motion[0].rotation.rate=-0.75' --set analysis.steps=75 --set analysis.smallest=1e-3 --out run --force --quiet
+near angle "$(awk -F, 'END { print 0.75 * $1 }' run/history.csv)" 0.496 0.02
+
 finish

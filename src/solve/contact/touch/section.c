@@ -19,6 +19,22 @@ static PetscReal points_at_side(const Cell *cell, PetscInt n)
   return (PetscReal)(dim == 2 ? k : k * (k + 1) / 2);
 }
 
+/* F^T n: across planes of the undeformed body that look at n now, and as much longer as they are nearer now. */
+static void pull_back(const PetscReal F[9], const PetscReal n[3], PetscReal N[3])
+{
+  for (int i = 0; i < 3; ++i) N[i] = F[i] * n[0] + F[3 + i] * n[1] + F[6 + i] * n[2];
+}
+
+/* Along which a surface looked at the start that looks at n now; of what has flowed nobody knows. */
+static void looked_along(const Points *points, PetscInt p, const PetscReal n[3], PetscBool torn, PetscReal N[3])
+{
+  PetscReal F[9], square = 0;
+  point_F(points, p, F);
+  pull_back(F, n, N);
+  for (int i = 0; i < 3; ++i) square += PetscSqr(N[i]);
+  for (int i = 0; i < 3; ++i) N[i] = torn ? n[i] : N[i] / PetscSqrtReal(square);
+}
+
 /* Of a cell as seen along n, m2. */
 static PetscReal shadow(CellType type, const PetscReal *x, const PetscReal n[3])
 {
@@ -28,12 +44,6 @@ static PetscReal shadow(CellType type, const PetscReal *x, const PetscReal n[3])
     sum += 0.5 * PetscAbsReal(area[0] * n[0] + area[1] * n[1] + area[2] * n[2]);
   }
   return sum;
-}
-
-/* F^T n: across planes of the undeformed body that look at n now, and as much longer as they are nearer now. */
-static void pull_back(const PetscReal F[9], const PetscReal n[3], PetscReal N[3])
-{
-  for (int i = 0; i < 3; ++i) N[i] = F[i] * n[0] + F[3 + i] * n[1] + F[6 + i] * n[2];
 }
 
 PetscReal contact_face(const Points *points, PetscInt p, const PetscReal n[3])
@@ -115,8 +125,8 @@ static PetscReal piece_of(const Points *points, PetscInt p, const PetscReal n[3]
   return thicker * volume;
 }
 
-/* What of its body's surface the point was given, if it was. Else a part of the point's volume
- * that has the shape of its cell; without one, of a square or cube. */
+/* What of its body's surface the point was given, if it was. Else a part of the point's volume that has the shape of
+ * its cell, and has turned with the matter; without one, of a square or cube. */
 PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n[3], const PetscReal radius[2])
 {
   const Grid *grid = scene->grid;
@@ -124,7 +134,7 @@ PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n
   const BodySpec *body = scene->c->bodies + points->body[p];
   const PetscReal power = (PetscReal)(grid->dim - 1) / (PetscReal)grid->dim;
   const PetscBool torn = is_torn(scene, p);
-  PetscReal x[CELL_MAX_NODES * 3], grown;
+  PetscReal x[CELL_MAX_NODES * 3], N[3], grown;
   const PetscReal volume = piece_of(points, p, n, torn, &grown) / kinematics_weight(scene->c->kinematics, radius[0]);
   const PetscReal square = PetscPowReal(volume, power), face = contact_face(points, p, n);
   grown *= kinematics_weight(scene->c->kinematics, PetscMax(radius[1], LEAST * radius[0]));
@@ -136,6 +146,7 @@ PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n
   grid_cell_x(grid, points->cell[p], x);
   const PetscReal whole = cell_volume(grid_cell_type(grid, points->cell[p]), x);
   const PetscReal share = (PetscReal)body->points_per_cell * volume / whole;
-  return shadow(grid_cell_type(grid, points->cell[p]), x, n) / points_at_side(cell, body->points_per_cell) *
+  looked_along(points, p, n, torn, N);
+  return shadow(grid_cell_type(grid, points->cell[p]), x, N) / points_at_side(cell, body->points_per_cell) *
          PetscPowReal(share, power) * grown;
 }
