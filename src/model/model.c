@@ -358,10 +358,14 @@ static PetscErrorCode CreateBodies(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-/* Layers of cells beyond a rank's own whose nodes it must know; of a mesh those at its boundary where bodies meet. */
+#define ALL_LAYERS (1 << 24) /* more than a box has */
+
+/* Layers of cells beyond a rank's own whose nodes it must know; of a mesh those at its boundary where bodies meet. A
+ * box that moves with its bodies takes them anywhere. */
 static PetscInt layers_beyond(const Model *m)
 {
   const Case *c = m->c;
+  if (c->n_interfaces && !m->method->restores_grid && !m->method->clouds) return ALL_LAYERS;
   const PetscInt lap = c->analysis.type == ANALYSIS_EXPLICIT; /* points cross cells before they change ranks */
   const PetscInt meets = c->n_interfaces ? CONTACT_HALO : 0;
   /* coarse nodes beside a node (solve/levels) */

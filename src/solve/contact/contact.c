@@ -6,6 +6,7 @@
 
 #define NEXT_TO_NOTHING 1e-6 /* of the largest force */
 #define LEANS 0.1            /* a normal with such a share of an axis holds along it */
+#define TAKEN_BACK 0.25      /* of a cell: on that way of sliding what a gap has leapt by is taken back */
 
 PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **contact)
 {
@@ -169,6 +170,15 @@ static void mark(const void *data, unsigned char *node)
   for (PetscInt e = 0; e < s->n_nodes; ++e) node[s->node[e]] = 1;
 }
 
+/* Of what its gap has leapt by: all on a quarter of a cell. */
+static PetscReal share_taken_back(const Contact *s, const ContactPoint *c)
+{
+  PetscReal across = 0, square = 0;
+  if (c->leapt == 0) return 0;
+  for (int d = 0; d < 3; ++d) across += c->slip[d] * c->normal[d], square += PetscSqr(c->slip[d]);
+  return PetscMin(1, PetscSqrtReal(PetscMax(0, square - across * across)) / (TAKEN_BACK * s->length));
+}
+
 /* Carriers keep what acted on them. */
 static PetscErrorCode Commit(void *data, const NodalScene *scene)
 {
@@ -186,6 +196,8 @@ static PetscErrorCode Commit(void *data, const NodalScene *scene)
     contact_force(c, f);
     for (PetscInt d = 0; d < dim && c->state != CONTACT_OPEN; ++d) kept[KEPT_FORCE + d] = s->share.mean * f[d];
     kept[KEPT_STAYS(dim)] = contact_stays(s, c);
+    kept[KEPT_LEAPT(dim)] = c->leapt;
+    kept[KEPT_TAKES(dim)] = share_taken_back(s, c);
     contact_keep_normal(kept, dim, s->sides, c->normal);
   }
   PetscFunctionReturn(0);

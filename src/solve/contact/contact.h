@@ -29,6 +29,7 @@ typedef struct {
   PetscReal spread;    /* sum of their |N|: it moves by no more than that times what the nodes do */
   PetscReal reach;     /* from the material point to its surface, at the start of the step, m; */
   PetscReal ahead;     /* and of that what counts along the normal at the last assembly */
+  PetscReal leapt;     /* and what has come of leaps of its gap, m: contact_bodies.c */
   PetscReal x[3];      /* at the start of the step, m */
   PetscReal swept[3];  /* what the wall's matter there moves by in the step, m; */
   PetscReal passes[3]; /* and that which is there in its middle: forces times it are work, torques times angles alike */

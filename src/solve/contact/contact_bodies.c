@@ -78,12 +78,21 @@ static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, co
 }
 
 /* Where it slides, a point stands before ever other points of the other body, whose surfaces do not go on into each
- * other: to close what its gap so leaps by would take a force that grows with the square of the step's shortness. */
-static void go_on_touching(const Contact *s, ContactPoint *c)
+ * other: to close what its gap so leaps by would take a force that grows with the square of the step's shortness. So
+ * its reach takes that up, and gives it back as it slides on: what comes under the front of a punch would grow ever
+ * thicker, or thinner. */
+static void go_on_touching(const Contact *s, const PetscReal *kept, ContactPoint *c)
 {
-  if (c->before == CONTACT_OPEN || PetscAbsReal(c->open) > LEAP * s->length) return;
-  c->reach += c->open;
-  c->open = 0;
+  c->leapt = kept[KEPT_LEAPT(s->dim)];
+  const PetscReal back = kept[KEPT_TAKES(s->dim)] * c->leapt;
+  if (c->before != CONTACT_OPEN && PetscAbsReal(c->open) <= LEAP * s->length) {
+    c->leapt += c->open;
+    c->reach += c->open;
+    c->open = 0;
+  }
+  c->leapt -= back;
+  c->reach -= back;
+  c->open += back;
 }
 
 static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder *f, PetscInt interface,
@@ -104,7 +113,7 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
   contact_take_law(s, scene, c);
   contact_remember(c, s->dim, kept, pair->normal);
   c->open = pair->gap - c->reach;
-  if (scene->c->analysis.type == ANALYSIS_DYNAMIC) go_on_touching(s, c);
+  if (scene->c->analysis.type == ANALYSIS_DYNAMIC) go_on_touching(s, kept, c);
   if (contact_passes(s, c, c->open, scene->first)) {
     --s->n;
     PetscFunctionReturn(0);
