@@ -140,6 +140,7 @@ static PetscErrorCode Search(CalibrateRun *r, CalibrateOutcome *outcome)
     PetscCall(CalibrateReport(r));
     *outcome = r->region.inside && calibrate_is_confirmed(r) ? CALIBRATE_DONE : CALIBRATE_NONE;
   }
+  members_tell_lacks(&r->members, r->diag);
   PetscFunctionReturn(0);
 }
 

@@ -104,6 +104,8 @@ static PetscErrorCode RunAll(SweepRun *s, SweepOutcome *outcome)
   } else if (done < s->members.n)
     diag_error(s->diag, NULL, "%" PetscInt_FMT " of %" PetscInt_FMT " members did not come to their end",
                s->members.n - done, s->members.n);
+  members_tell_lacks(&s->members, s->diag);
+  if (diag_errors(s->diag)) *outcome = SWEEP_FAILED;
   PetscFunctionReturn(0);
 }
 

@@ -46,67 +46,156 @@ const char *taken_unit(const Taken *taken, const char *measure, char unit[64])
   return unit;
 }
 
-/* The rows of a window, t and y. */
+/* A measure over the window, or as much of it as the history has: a line between rows, so that the window cuts both
+ * ends where no row stands there. */
 typedef struct {
-  PetscInt n, columns;
-  const PetscReal *row; /* the first */
+  const History *history;
   PetscInt column;
-} Rows;
+  PetscInt first, last; /* rows in the window; first > last: none */
+  PetscReal from, to;   /* what of the window is in the history */
+} Span;
 
-static PetscReal time_of(const Rows *r, PetscInt i) { return r->row[i * r->columns]; }
-static PetscReal value_of(const Rows *r, PetscInt i) { return r->row[i * r->columns + r->column]; }
-
-static Rows rows_within(const Taken *taken, const History *history)
+static PetscReal time_of(const Span *s, PetscInt i) { return s->history->values[i * s->history->n_columns]; }
+static PetscReal value_of(const Span *s, PetscInt i)
 {
-  Rows rows = {.columns = history->n_columns, .column = history_column(history, taken->measure)};
-  for (PetscInt i = 0; i < history->n_rows && rows.column >= 0; ++i) {
-    const PetscReal *row = history->values + i * history->n_columns;
-    /* times are sums of steps */
-    const PetscReal air = 1e-9 * PetscMax(PetscAbsReal(taken->from), PetscAbsReal(taken->to));
-    if (taken->has_window && (row[0] < taken->from - air || row[0] > taken->to + air)) continue;
-    if (!rows.n++) rows.row = row;
+  return s->history->values[i * s->history->n_columns + s->column];
+}
+
+/* times are sums of steps */
+static PetscReal air_of(const Taken *taken)
+{
+  return taken->has_window ? 1e-9 * PetscMax(PetscAbsReal(taken->from), PetscAbsReal(taken->to)) : 0;
+}
+
+/* Ends within air of a row are that row's. */
+static Span span_of(const Taken *taken, const History *history)
+{
+  Span s = {.history = history, .column = history_column(history, taken->measure), .last = history->n_rows - 1};
+  const PetscReal air = air_of(taken), begin = time_of(&s, 0), end = time_of(&s, s.last);
+  s.from = taken->has_window ? PetscMax(taken->from, begin) : begin;
+  s.to = taken->has_window ? PetscMin(taken->to, end) : end;
+  while (s.first <= s.last && time_of(&s, s.first) < s.from - air) ++s.first;
+  while (s.last >= s.first && time_of(&s, s.last) > s.to + air) --s.last;
+  if (s.first <= s.last && time_of(&s, s.first) <= s.from + air) s.from = time_of(&s, s.first);
+  if (s.first <= s.last && time_of(&s, s.last) >= s.to - air) s.to = time_of(&s, s.last);
+  return s;
+}
+
+/* Entry i of its n: the rows in the window, and before and behind them the ends where no row is. */
+static PetscInt entries(const Span *s)
+{
+  const PetscInt n = s->last - s->first + 1;
+  if (!n) return s->to > s->from ? 2 : 1;
+  return n + (s->from < time_of(s, s->first)) + (s->to > time_of(s, s->last));
+}
+
+static PetscReal between(const Span *s, PetscInt row, PetscReal t)
+{
+  const PetscReal t0 = time_of(s, row), y0 = value_of(s, row);
+  return y0 + (t - t0) / (time_of(s, row + 1) - t0) * (value_of(s, row + 1) - y0);
+}
+
+static void entry(const Span *s, PetscInt i, PetscReal *t, PetscReal *y)
+{
+  const PetscBool cut = (PetscBool)(s->first > s->last || s->from < time_of(s, s->first));
+  const PetscInt row = s->first + i - cut;
+  if (i == 0 && cut) *t = s->from, *y = between(s, s->first - 1, s->from);
+  else if (row > s->last) *t = s->to, *y = between(s, s->last, s->to);
+  else *t = time_of(s, row), *y = value_of(s, row);
+}
+
+static PetscReal mean_of(const Span *s)
+{
+  PetscReal area = 0, t, y, next_t, next_y;
+  entry(s, 0, &t, &y);
+  if (!(s->to > s->from)) return y;
+  for (PetscInt i = 1; i < entries(s); ++i, t = next_t, y = next_y) {
+    entry(s, i, &next_t, &next_y);
+    area += 0.5 * (next_t - t) * (y + next_y);
   }
-  return rows;
+  return area / (s->to - s->from);
 }
 
-static PetscReal mean_of(const Rows *r)
+/* Of the rows alone. */
+static PetscReal slope_of(const Span *s)
 {
-  PetscReal area = 0;
-  const PetscReal length = time_of(r, r->n - 1) - time_of(r, 0);
-  for (PetscInt i = 0; i + 1 < r->n; ++i)
-    area += 0.5 * (time_of(r, i + 1) - time_of(r, i)) * (value_of(r, i) + value_of(r, i + 1));
-  return length > 0 ? area / length : value_of(r, 0);
-}
-
-static PetscReal slope_of(const Rows *r)
-{
+  const PetscReal n = (PetscReal)(s->last - s->first + 1);
   PetscReal t = 0, y = 0, tt = 0, ty = 0;
-  for (PetscInt i = 0; i < r->n; ++i) t += time_of(r, i) / (PetscReal)r->n, y += value_of(r, i) / (PetscReal)r->n;
-  for (PetscInt i = 0; i < r->n; ++i) {
-    tt += (time_of(r, i) - t) * (time_of(r, i) - t);
-    ty += (time_of(r, i) - t) * (value_of(r, i) - y);
+  for (PetscInt i = s->first; i <= s->last; ++i) t += time_of(s, i) / n, y += value_of(s, i) / n;
+  for (PetscInt i = s->first; i <= s->last; ++i) {
+    tt += (time_of(s, i) - t) * (time_of(s, i) - t);
+    ty += (time_of(s, i) - t) * (value_of(s, i) - y);
   }
   return tt > 0 ? ty / tt : NAN;
 }
 
 /* NaN in a row is NaN in all. */
-static PetscReal extreme_of(const Rows *r, PetscReal sign)
+static PetscReal extreme_of(const Span *s, PetscReal sign)
 {
-  PetscReal most = value_of(r, 0);
-  for (PetscInt i = 1; i < r->n; ++i)
-    if (PetscIsNanReal(value_of(r, i)) || sign * value_of(r, i) > sign * most) most = value_of(r, i);
+  PetscReal most, t, y;
+  entry(s, 0, &t, &most);
+  for (PetscInt i = 1; i < entries(s); ++i) {
+    entry(s, i, &t, &y);
+    if (PetscIsNanReal(y) || sign * y > sign * most) most = y;
+  }
   return most;
 }
 
-PetscReal taken_value(const Taken *taken, const History *history)
+static PetscReal end_of(const Span *s)
 {
-  const Rows rows = rows_within(taken, history);
-  if (!rows.n) return NAN;
+  PetscReal t, y;
+  entry(s, entries(s) - 1, &t, &y);
+  return y;
+}
+
+static PetscReal take_from(const Taken *taken, const Span *s)
+{
   switch (taken->take) {
-  case TAKE_MAX: return taken->times * extreme_of(&rows, 1);
-  case TAKE_MIN: return taken->times * extreme_of(&rows, -1);
-  case TAKE_MEAN: return taken->times * mean_of(&rows);
-  case TAKE_SLOPE: return taken->times * slope_of(&rows);
-  default: return taken->times * value_of(&rows, rows.n - 1);
+  case TAKE_MAX: return extreme_of(s, 1);
+  case TAKE_MIN: return extreme_of(s, -1);
+  case TAKE_MEAN: return mean_of(s);
+  case TAKE_SLOPE: return slope_of(s);
+  default: return end_of(s);
   }
+}
+
+/* A value at the end of a run is missing there, which the run itself has told. */
+static void tell_missing(const Taken *taken, const Span *s, char why[TAKEN_WHY])
+{
+  PetscReal t, y;
+  if (taken->take == TAKE_SLOPE && !(s->last > s->first && time_of(s, s->last) > time_of(s, s->first))) {
+    (void)snprintf(why, TAKEN_WHY, "a slope needs two rows of the history, and from %g to %g s there is less",
+                   (double)s->from, (double)s->to);
+    return;
+  }
+  for (PetscInt i = 0; i < entries(s) && (taken->has_window || taken->take != TAKE_END); ++i) {
+    entry(s, i, &t, &y);
+    if (!PetscIsNanReal(y)) continue;
+    (void)snprintf(why, TAKEN_WHY, "it has no value (nan) at %g s", (double)t);
+    return;
+  }
+}
+
+PetscReal taken_value(const Taken *taken, const History *history, char why[TAKEN_WHY])
+{
+  const PetscReal begin = history->n_rows ? history->values[0] : 0, air = air_of(taken),
+                  end = history->n_rows ? history->values[(history->n_rows - 1) * history->n_columns] : 0;
+  why[0] = '\0';
+  if (!history->n_rows || history_column(history, taken->measure) < 0) {
+    (void)snprintf(why, TAKEN_WHY, "the history has no values of it");
+    return NAN;
+  }
+  const PetscBool beyond = (PetscBool)(taken->has_window && (taken->from < begin - air || taken->to > end + air));
+  if (beyond && (taken->to < begin - air || taken->from > end + air)) {
+    (void)snprintf(why, TAKEN_WHY, "its window, %g to %g s, lies outside of the history, which goes from %g to %g s",
+                   (double)taken->from, (double)taken->to, (double)begin, (double)end);
+    return NAN;
+  }
+  const Span s = span_of(taken, history);
+  const PetscReal value = take_from(taken, &s);
+  if (PetscIsNanReal(value)) tell_missing(taken, &s, why);
+  else if (beyond)
+    (void)snprintf(why, TAKEN_WHY, "its window, %g to %g s, reaches beyond the history: taken from %g to %g s alone",
+                   (double)taken->from, (double)taken->to, (double)s.from, (double)s.to);
+  return taken->times * value;
 }

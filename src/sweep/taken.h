@@ -33,6 +33,9 @@ const char *taken_name(const Taken *taken, char name[128]);
 const char *taken_name_among(const Taken *taken, PetscInt n, const Taken *others, char name[128]);
 /* Its unit, from that of the measure. Returns buffer. */
 const char *taken_unit(const Taken *taken, const char *measure, char unit[64]);
-/* NaN where the history has no such number: no row within the window. The mean is over time
- * (trapezia), the slope by least squares, per second. */
-PetscReal taken_value(const Taken *taken, const History *history);
+#define TAKEN_WHY 192
+/* Between rows a measure goes along a line, which the ends of a window cut: the mean over time (trapezia), largest,
+ * smallest and last value are those of the lines; the slope (per second) is by least squares over the rows, two at
+ * least. NaN where the history has no such number, and why; of a window that reaches beyond the history what is in it,
+ * and that it does. why: "" else. */
+PetscReal taken_value(const Taken *taken, const History *history, char why[TAKEN_WHY]);

@@ -104,7 +104,12 @@ grep -q "^3e5,$low," b/sweep.csv || fail "$name: the least is $low"
 # Several windows of one measure have them in their names, and a measure that is alone has none
 expect "windows" 0 "$talus" sweep case.yaml --over grid.size=0.5,0.25 --measure tip:mean:0:0.5 --measure tip:mean:0.5:1 --measure tip:max:0.5:1 --out windows
 says windows/sweep.csv "grid.size [m],tip mean 0 to 0.5 s [m],tip mean 0.5 to 1 s [m],tip max [m],steps"
-says out.txt "tip mean 0 to 0.5 s = 0 m, tip mean 0.5 to 1 s = "
+# One step: a line from 0 at 0 s to the tip's value T at 1 s, so T / 4, 3 T / 4, and T / 2 as largest (T < 0)
+awk -F, 'function off(a, b) {return (a - b) ^ 2 > 1e-20 * b ^ 2} NR > 1 && (off($2, $4 / 2) || off($3, 1.5 * $4)) {bad = 1} END {exit bad}' windows/sweep.csv || fail "$name: $(cat windows/sweep.csv)"
+expect "a window beyond the end" 0 "$talus" sweep case.yaml --over grid.size=0.5 --measure tip:mean:0.5:2 --out beyond
+says err.txt "warning: 'tip mean' of size=0.5: its window, 0.5 to 2 s, reaches beyond the history: taken from 0.5 to 1 s alone"
+expect "a slope of one row" 1 "$talus" sweep case.yaml --over grid.size=0.5,0.25 --measure tip:slope:0.5:1 --out slope
+says err.txt "error: 'tip slope' of size=0.5 (and 1 more): a slope needs two rows of the history, and from 0.5 to 1 s there is less"
 if command -v gnuplot >/dev/null; then
   for picture in tip-mean-0-to-0.5-s tip-mean-0.5-to-1-s tip-max; do [ -s windows/$picture.png ] || fail "$name: no $picture.png"; done
 fi

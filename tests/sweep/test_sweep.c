@@ -62,7 +62,10 @@ static PetscReal take(Take what, PetscReal from, PetscReal to, const History *hi
 {
   const Taken taken = {
     .measure = (char *)"y", .take = what, .has_window = to > from, .from = from, .to = to, .times = 2};
-  return taken_value(&taken, history);
+  char why[TAKEN_WHY];
+  const PetscReal value = taken_value(&taken, history, why);
+  assert_true(!PetscIsNanReal(value) || why[0] || (what == TAKE_END && !taken.has_window));
+  return value;
 }
 
 /* y = 3 t - 1 at moments that are not evenly spaced: trapezia and least squares are exact. */
@@ -86,6 +89,53 @@ static void test_taken(void **state)
   assert_true(PetscIsNanReal(take(TAKE_MAX, 0, 0, &history)));
   assert_true(PetscIsNanReal(take(TAKE_MIN, 0, 0, &history)));
   assert_true(PetscIsNanReal(take(TAKE_MEAN, 0, 0, &history)));
+}
+
+/* A roof, 0 1 0 at 0 1 2 s, cut by windows between its rows: the lines are known in closed form. */
+static void test_window_between_rows(void **state)
+{
+  PetscReal rows[3][2] = {{0, 0}, {1, 1}, {2, 0}};
+  char *names[] = {(char *)"time", (char *)"y"};
+  const History history = {.n_rows = 3, .n_columns = 2, .names = names, .values = rows[0]};
+  (void)state;
+  assert_float_equal(take(TAKE_MEAN, 0.5, 1.75, &history), 2 * (0.375 + 0.46875) / 1.25, 1e-14);
+  assert_float_equal(take(TAKE_MIN, 0.5, 1.75, &history), 2 * 0.25, 1e-14);
+  assert_float_equal(take(TAKE_MAX, 0.5, 1.75, &history), 2 * 1, 1e-14);
+  assert_float_equal(take(TAKE_END, 0.5, 1.75, &history), 2 * 0.25, 1e-14);
+  assert_float_equal(take(TAKE_MEAN, 0.25, 0.75, &history), 2 * 0.5, 1e-14); /* no row in it */
+  assert_float_equal(take(TAKE_MIN, 0.25, 0.75, &history), 2 * 0.25, 1e-14);
+  assert_float_equal(take(TAKE_MAX, 0.25, 0.75, &history), 2 * 0.75, 1e-14);
+  assert_float_equal(take(TAKE_END, 0.25, 0.75, &history), 2 * 0.75, 1e-14);
+  assert_float_equal(take(TAKE_MEAN, 1, 1.5, &history), 2 * 0.75, 1e-14); /* from a row on */
+  assert_float_equal(take(TAKE_SLOPE, 0.9, 2, &history), -2, 1e-14);
+}
+
+static PetscReal take_and_say(Take what, PetscReal from, PetscReal to, const History *history, const char *must)
+{
+  const Taken taken = {
+    .measure = (char *)"y", .take = what, .has_window = PETSC_TRUE, .from = from, .to = to, .times = 1};
+  char why[TAKEN_WHY];
+  const PetscReal value = taken_value(&taken, history, why);
+  if (!strstr(why, must)) fail_msg("'%s' does not say '%s'", why, must);
+  if (!must[0]) assert_string_equal(why, "");
+  return value;
+}
+
+/* What the history does not have is told, and is no number or that of the part that it has. */
+static void test_window_beyond(void **state)
+{
+  PetscReal rows[3][2] = {{0, 0}, {1, 1}, {2, 0}};
+  char *names[] = {(char *)"time", (char *)"y"};
+  const History history = {.n_rows = 3, .n_columns = 2, .names = names, .values = rows[0]};
+  (void)state;
+  assert_float_equal(take_and_say(TAKE_MEAN, 1.5, 3, &history, "reaches beyond the history"), 0.25, 1e-14);
+  assert_float_equal(take_and_say(TAKE_MAX, 1.5, 3, &history, "taken from 1.5 to 2 s alone"), 0.5, 1e-14);
+  assert_true(PetscIsNanReal(take_and_say(TAKE_MEAN, 3, 4, &history, "lies outside of the history")));
+  assert_true(PetscIsNanReal(take_and_say(TAKE_SLOPE, 0.5, 1.5, &history, "a slope needs two rows")));
+  assert_true(PetscIsNanReal(take_and_say(TAKE_SLOPE, 0.25, 0.75, &history, "a slope needs two rows")));
+  assert_float_equal(take_and_say(TAKE_MEAN, 0.5, 2 + 1e-12, &history, ""), (0.375 + 0.5) / 1.5, 1e-11);
+  rows[1][1] = NAN;
+  assert_true(PetscIsNanReal(take_and_say(TAKE_MEAN, 1, 2, &history, "no value (nan) at 1 s")));
 }
 
 static void test_units(void **state)
@@ -130,10 +180,8 @@ static void test_product(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_values),
-    cmocka_unit_test(test_taken),
-    cmocka_unit_test(test_units),
-    cmocka_unit_test(test_product),
+    cmocka_unit_test(test_values),        cmocka_unit_test(test_taken), cmocka_unit_test(test_window_between_rows),
+    cmocka_unit_test(test_window_beyond), cmocka_unit_test(test_units), cmocka_unit_test(test_product),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -23,7 +23,7 @@ PetscErrorCode MembersAdd(Members *members, const char *folder, const char *name
   *m = (Member){.file = file, .n_taken = n_taken, .taken = taken};
   PetscCall(PetscStrncpy(m->name, name, sizeof m->name));
   PetscCall(PetscSNPrintf(m->folder, sizeof m->folder, "%s/%s", folder, m->name));
-  PetscCall(PetscCalloc2(n_taken, &m->values, n_taken, &m->units));
+  PetscCall(PetscCalloc3(n_taken, &m->values, n_taken, &m->units, n_taken, &m->lack));
   for (PetscInt k = 0; k < n_taken; ++k) m->values[k] = NAN;
   PetscFunctionReturn(0);
 }
@@ -33,7 +33,7 @@ PetscErrorCode MembersClear(Members *members)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < members->n; ++i) {
     PetscCall(SettingListClear(&members->member[i].set));
-    PetscCall(PetscFree2(members->member[i].values, members->member[i].units));
+    PetscCall(PetscFree3(members->member[i].values, members->member[i].units, members->member[i].lack));
   }
   PetscCall(PetscFree(members->member));
   members->n = 0;
@@ -136,11 +136,38 @@ PetscErrorCode MemberRead(const Members *members, Member *m)
     PetscCall(PetscSNPrintf(m->why, sizeof m->why, "its history.csv cannot be read: %s", reason));
     PetscFunctionReturn(0);
   }
-  for (PetscInt k = 0; k < m->n_taken; ++k) m->values[k] = taken_value(&m->taken[k], &history);
+  for (PetscInt k = 0; k < m->n_taken; ++k) m->values[k] = taken_value(&m->taken[k], &history, m->lack[k]);
   PetscCall(HistoryFree(&history));
   m->state = MEMBER_DONE;
   if (!members->keep) run_dir_remove_states(m->folder);
   PetscFunctionReturn(0);
+}
+
+/* Members from `first` on that lack this number in one way or another. */
+static PetscInt count_lacks(const Members *members, PetscInt first, const Taken *taken)
+{
+  PetscInt n = 0;
+  for (PetscInt i = first; i < members->n; ++i)
+    for (PetscInt k = 0; k < members->member[i].n_taken; ++k)
+      n += members->member[i].taken + k == taken && members->member[i].lack[k][0];
+  return n;
+}
+
+/* Of rows that are too few for a slope there is no number in any reading: a mistake. */
+void members_tell_lacks(const Members *members, Diag *diag)
+{
+  const DiagPlace nowhere = {.width = 1};
+  char name[128], more[64];
+  for (PetscInt i = 0; i < members->n; ++i)
+    for (PetscInt k = 0; k < members->member[i].n_taken; ++k) {
+      const Member *m = &members->member[i];
+      const PetscInt n = count_lacks(members, i, m->taken + k);
+      if (!m->lack[k][0] || n < count_lacks(members, 0, m->taken + k)) continue; /* an earlier one has told */
+      PetscSNPrintf(more, sizeof more, n > 1 ? " (and %" PetscInt_FMT " more)" : "", n - 1);
+      const PetscBool asks_wrong = (PetscBool)(m->taken[k].take == TAKE_SLOPE && PetscIsNanReal(m->values[k]));
+      diag_at(diag, asks_wrong ? DIAG_ERROR : DIAG_WARNING, &nowhere, "'%s' of %s%s: %s",
+              taken_name_among(m->taken + k, m->n_taken, m->taken, name), m->name, more, m->lack[k]);
+    }
 }
 
 /* Members in the order of their numbers, as many at a time as there may be. */

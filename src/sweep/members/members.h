@@ -26,8 +26,9 @@ typedef struct {
   SettingList set;
   PetscInt n_taken; /* numbers of its history, */
   const Taken *taken;
-  PetscReal *values; /* what they are: NaN until it is done */
-  char (*units)[64]; /* and in which unit */
+  PetscReal *values;       /* what they are: NaN until it is done */
+  char (*units)[64];       /* and in which unit */
+  char (*lack)[TAKEN_WHY]; /* why a value is missing, or not over all of its window; "" else */
   MemberState state;
   PetscBool kept;     /* done before */
   PetscBool resume;   /* goes on from a checkpoint */
@@ -63,6 +64,9 @@ PetscErrorCode MemberRead(const Members *members, Member *m);
 /* Run all that are not done; a signal (run/signals.h) lets them write their checkpoints and
  * leave. */
 PetscErrorCode MembersRun(Members *members);
+/* Say which values of runs that are done are missing (an error of slopes, else a warning), or not over all
+ * of their windows: each number once. */
+void members_tell_lacks(const Members *members, Diag *diag);
 /* How many are in this state. */
 PetscInt members_count(const Members *members, MemberState state);
 
