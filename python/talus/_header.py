@@ -4,6 +4,8 @@ import ctypes
 import re
 from pathlib import Path
 
+from .errors import LibraryError
+
 _HERE = Path(__file__).resolve().parent
 
 # MPI_Comm is a pointer (Open MPI) or an int (MPICH), which a pointer's register holds as well.
@@ -16,7 +18,8 @@ def find_header():
     for file in (_HERE / "talus.h", _HERE.parents[1] / "include" / "talus.h"):
         if file.is_file():
             return file
-    raise FileNotFoundError("talus.h is neither beside the package nor in ../../include")
+    raise LibraryError(f"talus.h is neither in {_HERE} nor in {_HERE.parents[1] / 'include'}: this copy of the package "
+                       "reads results; `pip install ./python` of the sources makes one that does everything")
 
 
 class Header:

@@ -10,7 +10,7 @@ from ._header import Header, find_header
 from ._version import version
 from .errors import LibraryError, TalusError
 
-_SONAME = "libtalus.so." + ".".join(version.split(".")[:2])
+_SONAME = "libtalus.so" if version == "unknown" else "libtalus.so." + ".".join(version.split(".")[:2])
 _HERE = Path(__file__).resolve().parent
 
 
@@ -47,8 +47,8 @@ class Library:
     """All functions of talus.h, as `library.TalusRanks(...)`; those that fail raise TalusError."""
 
     def __init__(self):
-        self._dll = _load()
         self.header = Header(find_header().read_text())
+        self._dll = _load()
         self.constants = self.header.constants
         self._started = False
         self._open = weakref.WeakSet()  # what must be closed before PETSc ends
@@ -59,7 +59,7 @@ class Library:
                 raise LibraryError(f"{self._dll._name} has no {name}: it is older than this package") from None
             function.restype, function.argtypes = result, arguments
         found = self._dll.TalusVersion().decode()
-        if found.split(".")[:2] != version.split(".")[:2]:
+        if version != "unknown" and found.split(".")[:2] != version.split(".")[:2]:
             raise LibraryError(f"{self._dll._name} is version {found}, this package is {version}")
 
     def code(self, name, *arguments):

@@ -3,6 +3,7 @@ an answer where there is none."""
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -25,6 +26,23 @@ class Runs(InFolder):
     def setUpClass(cls):
         super().setUpClass()
         program("run", BLOCK, "--out", "block", "--set", "output.every={steps: 2}", "--quiet")
+
+    def test_a_copy_of_the_package_reads_results(self):
+        """Away from the sources its version is unknown, and what needs the library says so."""
+        shutil.copytree(SOURCE / "python", "copy/python", ignore=shutil.ignore_patterns("__pycache__"))
+        script = ("import talus; print(talus.__version__, len(talus.open('block').history['top']), "
+                  "len(talus.open('block').states))\n"
+                  "try: talus.fields()\nexcept talus.LibraryError as error: print(error)")
+        environment = dict(os.environ, PYTHONPATH="copy/python")
+        for others in (None, "project(another VERSION 3.0)\n"):  # and in the folder of another project
+            if others:
+                Path("copy/CMakeLists.txt").write_text(others)
+            done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True)
+            self.assertEqual(done.stderr, "")
+            numbers, error = done.stdout.splitlines()
+            rows, states = len(talus.open("block").history["top"]), len(talus.open("block").states)
+            self.assertEqual(numbers, f"unknown {rows} {states}")
+            self.assertIn("talus.h is neither in", error)
 
     def test_history_is_that_of_the_file(self):
         history = talus.open("block").history
