@@ -179,6 +179,7 @@ typedef struct Model {
   /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
   PetscReal most_energy;
   PetscReal least_energy; /* of strains that steps can tell from none, J */
+  PetscReal open_energy;  /* that forces out of balance, as steps have left them, may have made or taken so far, J */
   Outside outside;
   MeasureMemory *memory;   /* one per measure */
   LoadMemory *load_memory; /* one per load */
@@ -270,7 +271,8 @@ PetscErrorCode ModelMeasure(Model *model, const MeasureSpec *measure, PetscInt i
 PetscErrorCode MemoryAppend(MeasureMemory *memory, PetscInt n, const PetscReal *numbers);
 const char *measure_unit(const MeasureSpec *measure);
 PetscErrorCode ModelEnergies(Model *model, Energies *energies);
-/* That steps can tell from none, J: of strains, and of gaps that contact leaves. */
+/* That steps can tell from none, J: of strains, of forces that they leave out of balance, and of gaps that contact
+ * leaves. */
 PetscReal energy_unresolved(const Model *model);
 
 /* Seconds that this rank spent in each phase since the start. */

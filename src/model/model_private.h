@@ -148,7 +148,7 @@ PetscErrorCode StrengthJudge(Model *model, StepReport *report);
 
 /* This rank's share of the energies of a step that is being accepted, J. */
 typedef struct EnergyStep {
-  PetscReal external, boundary, damped, transfer, friction, numerical, held;
+  PetscReal external, boundary, damped, transfer, friction, numerical, held, open;
 } EnergyStep;
 
 /* What a step changes although it is not accepted, besides v and a of the nodes. */

@@ -104,7 +104,7 @@ static PetscErrorCode KeepAccount(Model *m, PetscReal before, PetscReal walls, P
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
   sum[1] += rigid_motion(m);
   if (next) m->start_energy += sum[1] - sum[0] - walls;
-  else m->start_energy = sum[1];
+  else m->start_energy = sum[1], m->open_energy = 0;
   m->most_energy = PetscMax(next ? m->most_energy : 0, m->start_energy + m->external_work + m->boundary_work);
   PetscFunctionReturn(0);
 }

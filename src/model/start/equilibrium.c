@@ -138,7 +138,7 @@ static PetscErrorCode Begin(Model *m)
 {
   PetscFunctionBeginUser;
   m->external_work = m->boundary_work = m->damped_energy = m->transfer_energy = m->friction_energy = 0;
-  m->numerical_energy = m->held_energy = 0;
+  m->numerical_energy = m->held_energy = m->open_energy = 0;
   m->limit = (Softening){0};
   m->guess = (Guess){0};
   m->cuts = 0;

@@ -11,7 +11,9 @@ typedef struct {
   size_t stride;
 } LostTable;
 
-static void list_tables(Model *m, LostTable table[4])
+enum { N_LOST = 5 };
+
+static void list_tables(Model *m, LostTable table[N_LOST])
 {
   table[0] = (LostTable){"energy_in", "most", 1, 1, (char *)&m->most_energy, 0};
   table[1] =
@@ -24,6 +26,7 @@ static void list_tables(Model *m, LostTable table[4])
                          sizeof *m->memory};
   table[3] = (LostTable){"ended_loads",          "when_carriers_force_where", m->c->n_loads, NUMBERS(LoadMemory, ended),
                          (char *)m->load_memory, sizeof *m->load_memory};
+  table[4] = (LostTable){"energy_open", "work", 1, 1, (char *)&m->open_energy, 0};
 }
 
 static PetscReal *row_of(const LostTable *t, PetscInt row) { return (PetscReal *)(t->data + t->stride * (size_t)row); }
@@ -39,13 +42,13 @@ static PetscBool is_empty(const LostTable *t)
 
 PetscErrorCode StateLostToTables(Model *m, Tables *tables)
 {
-  LostTable list[4];
+  LostTable list[N_LOST];
   Table *table;
   Column *column;
 
   PetscFunctionBeginUser;
   list_tables(m, list);
-  for (const LostTable *t = list; t < list + 4; ++t) {
+  for (const LostTable *t = list; t < list + N_LOST; ++t) {
     if (is_empty(t)) continue;
     PetscCall(TablesAdd(tables, t->name, PETSC_TRUE, t->rows, &table));
     PetscCall(TableAdd(table, t->column, NULL, COLUMN_REAL, t->components, NULL, &column));
@@ -57,9 +60,9 @@ PetscErrorCode StateLostToTables(Model *m, Tables *tables)
 
 void state_lost_from_tables(Model *m, const Tables *tables, char reason[256])
 {
-  LostTable list[4];
+  LostTable list[N_LOST];
   list_tables(m, list);
-  for (const LostTable *t = list; t < list + 4 && !reason[0]; ++t) {
+  for (const LostTable *t = list; t < list + N_LOST && !reason[0]; ++t) {
     const Table *table = tables_find(tables, t->name);
     if (!table) continue;
     if (table->rows != t->rows || !table->everywhere) snprintf(reason, 256, "%s makes no sense", t->name);

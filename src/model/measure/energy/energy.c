@@ -249,6 +249,24 @@ static PetscErrorCode RestWork(const Model *m, PetscReal *work)
   PetscFunctionReturn(0);
 }
 
+/* What forces out of balance, as the step left them, may have done: whatever the sign, or the way that they turned with
+ * their node. */
+static PetscReal open_work(const Model *m)
+{
+  const NodalFields *n = m->nodes;
+  PetscReal sum = 0;
+  for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
+    PetscReal force = 0, way = 0;
+    if (!n->touched[node]) continue;
+    for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i) {
+      if (!n->fixed[i]) force += PetscSqr(n->force[i]);
+      way += PetscSqr(n->du[i]);
+    }
+    sum += PetscSqrtReal(force * way);
+  }
+  return sum;
+}
+
 PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 {
   const PetscReal damping = model_damping(m);
@@ -282,6 +300,7 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
   PetscCall(RestWork(m, &rest));
   e->external -= rest;
   e->held = held_work(m) - rest;
+  e->open = open_work(m);
   e->friction = contact.sliding;
   held += contact.moving;
   e->boundary = held + impulse - contact.rigid;
@@ -299,15 +318,15 @@ PetscErrorCode EnergyOfNodes(Model *m, PetscReal dt, EnergyStep *e)
 PetscErrorCode EnergyClose(Model *m, EnergyStep *e)
 {
   const OutsideTally *gone = &m->points->outside;
-  PetscReal local[7], sum[7];
+  PetscReal local[8], sum[8];
 
   PetscFunctionBeginUser;
   if (m->scheme->inertia) e->transfer -= points_kinetic(m) + gone->kinetic;
   /* of the step: what is gone counts apart */
   if (m->method->restores_grid) e->transfer -= points_work(m) + gone->work;
   local[0] = e->external, local[1] = e->boundary, local[2] = e->damped, local[3] = e->transfer;
-  local[4] = e->friction, local[5] = e->numerical, local[6] = e->held;
-  PetscCall(MPIU_Allreduce(local, sum, 7, MPIU_REAL, MPI_SUM, m->comm));
+  local[4] = e->friction, local[5] = e->numerical, local[6] = e->held, local[7] = e->open;
+  PetscCall(MPIU_Allreduce(local, sum, 8, MPIU_REAL, MPI_SUM, m->comm));
   m->external_work += sum[0];
   m->boundary_work += sum[1];
   m->damped_energy += sum[2];
@@ -315,6 +334,7 @@ PetscErrorCode EnergyClose(Model *m, EnergyStep *e)
   m->friction_energy += sum[4];
   m->numerical_energy += sum[5];
   m->held_energy += sum[6];
+  m->open_energy += sum[7];
   m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work + rigid_work(m));
   PetscFunctionReturn(0);
 }
@@ -327,7 +347,7 @@ void energy_of_points(const Model *m, PetscReal energy[2])
 
 PetscReal energy_unresolved(const Model *m)
 {
-  return m->least_energy + contact_unresolved(m->contact, m->grid->smallest);
+  return m->least_energy + m->open_energy + contact_unresolved(m->contact, m->grid->smallest);
 }
 
 PetscErrorCode ModelEnergies(Model *m, Energies *e)
