@@ -102,4 +102,10 @@ ls cut/checkpoint_*.h5 | sed -n '9,$p' | xargs rm
 rm cut/timings.txt
 expect "a peak, resumed" 0 "$talus" run --resume cut --quiet
 cmp -s peak/history.csv cut/history.csv || fail "$name: another history"
+
+# The last of so many equal steps ends at the end: ten tenths sum up to 0.9999999999999999
+for steps in 3 10 49; do
+  expect "the end of $steps steps" 0 "$talus" run peak.yaml --out equal --force --quiet --set materials.m.cohesion=1e9 --set analysis.end=1 --set analysis.steps=$steps --set output.every=2
+  [ "$(tail -n 1 equal/history.csv | cut -d, -f1)" = 1 ] || fail "$name: $(tail -n 1 equal/history.csv)"
+done
 finish

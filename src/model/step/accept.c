@@ -134,6 +134,14 @@ static void note_unstable(Model *m, PetscReal before, const NewtonReport *newton
   m->unstable.ways = PetscMax(m->unstable.ways, newton->negative);
 }
 
+/* Sums of steps miss the end by their rounding, and what is short of it by so little is it. Of dynamics, which may go on
+ * to a later end, times stay the sums that they would be then. */
+static PetscReal time_after(const Model *m, PetscReal dt)
+{
+  const PetscReal t = m->time + dt, end = m->c->analysis.end;
+  return !m->scheme->inertia && t < end && t >= end * (1 - 1e-12) ? end : t;
+}
+
 PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepReport *report)
 {
   PetscLogDouble clock;
@@ -146,7 +154,7 @@ PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepRepor
   note_mechanism(m, 1, dt);
   if (!stays || !m->formulation->pressure) m->space->present = PETSC_FALSE; /* pressures are those of the nodes now */
   PetscCall(PhaseEnd(m->seconds, PHASE_MOVE, &clock));
-  m->time += dt;
+  m->time = time_after(m, dt);
   ++m->step;
   PetscCall(EnergyClose(m, energy));
   PetscCall(OutsideAdd(m, report));
