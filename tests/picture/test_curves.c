@@ -181,6 +181,44 @@ static void Begins(const char *path, const char *with)
   assert_memory_equal(begin, with, strlen(with));
 }
 
+/* A case with an amplitude of n points (k, k), of which those from `other` on are (k, k + 0.5), and a short one. */
+static void WriteAmplitudes(const char *folder, int n, int other, int end)
+{
+  char text[2048], *at = text;
+  at += sprintf(at, "boundary: [{amplitude: [");
+  for (int k = 0; k < n; ++k) at += sprintf(at, "%s[%d, %g]", k ? ", " : "", k, k >= other ? k + 0.5 : k);
+  sprintf(at, "]}]\nloads: {gravity_amplitude: [[0, 0], [%d, 1]]}\n", end);
+  WriteFile(folder, "case.yaml", text);
+}
+
+/* An amplitude of many points is one key, whose values say which point is another; a short one stands as it is. */
+static void test_keys_of_tables(void **state)
+{
+  char folder[64], a[128], b[128];
+  const char *const runs[] = {a, b};
+  DifferingKeys keys;
+  (void)state;
+  TestFolder(folder);
+  WriteRun(folder, "a", 4, 1, 5e6), WriteRun(folder, "b", 4, 1, 5e6);
+  snprintf(a, sizeof a, "%s/a", folder), snprintf(b, sizeof b, "%s/b", folder);
+  WriteAmplitudes(a, 50, 50, 1), WriteAmplitudes(b, 51, 7, 2);
+  assert_int_equal(KeysDiffer(2, runs, &keys), 0);
+  assert_int_equal(keys.n, 2);
+  assert_string_equal(keys.key[0], "boundary[0].amplitude");
+  assert_string_equal(keys.value[0], "50 points, [7]: [7, 7]");
+  assert_string_equal(keys.value[1], "51 points, [7]: [7, 7.5]");
+  assert_string_equal(keys.key[1], "loads.gravity_amplitude");
+  assert_string_equal(keys.value[2 + 1], "[[0, 0], [2, 1]]");
+  assert_int_equal(DifferingKeysFree(&keys), 0);
+  WriteAmplitudes(b, 52, 52, 1); /* alike as far as the shorter one goes */
+  assert_int_equal(KeysDiffer(2, runs, &keys), 0);
+  assert_int_equal(keys.n, 1);
+  assert_string_equal(keys.value[0], "50 points, [50]: -");
+  assert_string_equal(keys.value[1], "52 points, [50]: [50, 50]");
+  assert_int_equal(DifferingKeysFree(&keys), 0);
+  TestRemove(folder);
+}
+
 static void test_formats(void **state)
 {
   char folder[64], a[128], b[128];
@@ -330,6 +368,38 @@ static void test_compare(void **state)
   TestRemove(folder);
 }
 
+/* What differs by round-off of the work done is no difference, however small it is itself; of the work itself it is. */
+static void test_compare_energies(void **state)
+{
+  char folder[64], a[128], b[128], out[128];
+  const char *const runs[] = {a, b}, *const head = "time [s],step,work [J],transfer [J],closed,other\n0,0,0,0,0,1\n";
+  const char *const yaml =
+    "measures: {work: {energy: external}, transfer: {energy: transfer}, closed: {energy: balance},"
+    " other: {formula: 1}}\n";
+  CompareOptions options = {.n_runs = 2, .runs = runs, .out = out};
+  char text[256];
+  PetscReal worst;
+  (void)state;
+  TestFolder(folder);
+  WriteRun(folder, "a", 4, 1, 5e6), WriteRun(folder, "b", 4, 1, 5e6);
+  snprintf(a, sizeof a, "%s/a", folder), snprintf(b, sizeof b, "%s/b", folder);
+  snprintf(out, sizeof out, "%s/out", folder);
+  for (int r = 0; r < 2; ++r) WriteFile(runs[r], "case.yaml", yaml);
+  snprintf(text, sizeof text, "%s1,1,100,1e-8,1e-10,1\n", head), WriteFile(a, "history.csv", text);
+  snprintf(text, sizeof text, "%s1,1,100,3e-8,-2e-10,1\n", head), WriteFile(b, "history.csv", text);
+  char *said = Compare(&options, &worst);
+  assert_true(fabs(worst - 3e-10) < 1e-20); /* of the balance; the transfer: 2e-8 of 100 J */
+  assert_non_null(strstr(said, "Energies are relative to the largest energy of both runs"));
+  free(said);
+  snprintf(text, sizeof text, "%s1,1,80,1e-8,1e-10,1\n", head), WriteFile(b, "history.csv", text);
+  free(Compare(&options, &worst));
+  assert_true(fabs(worst - 0.2) < 1e-14);
+  snprintf(text, sizeof text, "%s1,1,100,1e-8,1e-10,1.5\n", head), WriteFile(b, "history.csv", text);
+  free(Compare(&options, &worst));
+  assert_true(fabs(worst - 0.5) < 1e-14); /* no energy, and no balance */
+  TestRemove(folder);
+}
+
 static int Tests(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_difference_of_waves),
@@ -337,10 +407,12 @@ static int Tests(void)
                                      cmocka_unit_test(test_lack),
                                      cmocka_unit_test(test_found),
                                      cmocka_unit_test(test_keys),
+                                     cmocka_unit_test(test_keys_of_tables),
                                      cmocka_unit_test(test_formats),
                                      cmocka_unit_test(test_legend),
                                      cmocka_unit_test(test_mistakes),
-                                     cmocka_unit_test(test_compare)};
+                                     cmocka_unit_test(test_compare),
+                                     cmocka_unit_test(test_compare_energies)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 

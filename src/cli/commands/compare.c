@@ -20,11 +20,13 @@ const CliUsage cli_compare_usage = {
   .usage = "talus compare RUN_DIR RUN_DIR [RUN_DIR...] [options]",
   .help =
     "Sets the histories of runs beside that of the first one: a table of the largest differences, when they are and\n"
-    "how large beside the largest value of the first run, the keys in which the resolved cases differ, and a picture\n"
-    "of each measure. Runs may have other steps: between its rows a history is taken as linear, and the differences\n"
-    "are those at all times of both within the time that they have in common. A value that one run has there and\n"
-    "another has not (nan) is a difference, too; what a search finds once is compared whenever it was found. The\n"
-    "tables are written as differences.csv and keys.csv, too.",
+    "how large beside the largest value of the first run, the keys in which the resolved cases differ (one line for\n"
+    "a table such as an amplitude), and a picture of each measure. Runs may have other steps: between its rows a\n"
+    "history is taken as linear, and the differences are those at all times of both within the time that they have\n"
+    "in common. Those of energies (in J) are relative to the largest energy of both runs, and those of a balance,\n"
+    "which is a share, stand as they are: what is round-off of something larger counts as that. A value that one\n"
+    "run has there and another has not (nan) is a difference, too; what a search finds once is compared whenever it\n"
+    "was found. The tables are written as differences.csv and keys.csv, too.",
   .examples =
     "talus compare runs/coarse runs/fine\n"
     "talus compare runs/before runs/after --measure tip --tolerance 1e-6   # for scripts: exit code 3 if they differ",

@@ -41,6 +41,35 @@ static void compare_curves(const Curve *a, const Curve *b, CompareRow *row)
   if (curve_lack(b, a, &row->lacks[1]) && row->lacks[1].to > row->difference.to) row->difference.last = NAN;
 }
 
+static PetscBool is_energy(const char *unit) { return (PetscBool)!strcmp(unit, "J"); }
+
+/* Of all energies in the history of a run. */
+static PetscReal largest_energy(const CurveRun *run)
+{
+  PetscReal largest = 0;
+  for (PetscInt column = 0; column < run->history.n_columns; ++column)
+    for (PetscInt i = 0; i < run->history.n_rows && is_energy(run->history.units[column]); ++i) {
+      const PetscReal value = PetscAbsReal(curve_run_value(run, i, column));
+      if (!PetscIsInfOrNanReal(value)) largest = PetscMax(largest, value);
+    }
+  return largest;
+}
+
+/* What an energy is made of, or told by a balance, is known to the round-off of the largest of them. */
+static PetscErrorCode ChooseScale(const Comparison *c, CompareRow *row)
+{
+  const CurveRun *a = &c->runs[0], *b = &c->runs[row->run];
+  PetscBool balance = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  if (!row->unit[0]) PetscCall(KeysMeasureIs(a->folder, row->measure, "energy", "balance", &balance));
+  if (is_energy(row->unit)) row->scale = PetscMax(largest_energy(a), largest_energy(b));
+  else if (balance) row->scale = 1;
+  if (row->scale > 0 && row->met && !row->found)
+    row->difference.relative = difference_relative_to(&row->difference, row->scale);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Compare(const Comparison *c, PetscInt column, CompareRow *row)
 {
   const CurveRun *a = &c->runs[0], *b = &c->runs[row->run];
@@ -112,6 +141,7 @@ static PetscErrorCode FillRows(Comparison *c)
       CompareRow *row = &c->rows[c->n_rows++];
       *row = (CompareRow){.measure = h->names[column], .unit = h->units[column], .run = r};
       PetscCall(Compare(c, column, row));
+      PetscCall(ChooseScale(c, row));
     }
   }
   PetscFunctionReturn(0);

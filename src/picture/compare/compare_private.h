@@ -13,6 +13,9 @@ typedef struct {
   PetscBool met;   /* have they a time in common at which both have values? */
   PetscBool found; /* values that each run finds once, at times of its own: these are compared */
   PetscBool empty; /* neither of them has a value */
+  /* Its differences are relative to this, of energies the largest of all, of their balance 1: what some of them are is
+   * round-off of others. 0: to its own largest value. */
+  PetscReal scale;
   Difference difference;
   Lack lacks[2]; /* where the first run has no value and the other one has, and the other way round */
 } CompareRow;

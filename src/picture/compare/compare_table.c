@@ -71,7 +71,7 @@ static void print_keys(FILE *out, const Comparison *c)
   for (PetscInt k = 0; k < PetscMin(keys->n, SHOWN_KEYS); ++k) {
     const char *unit = schema_unit(keys->key[k]);
     fprintf(out, "%-44s", keys->key[k]);
-    for (PetscInt r = 0; r < keys->n_runs; ++r) fprintf(out, " %*.40s", width, value_of(keys, k, r));
+    for (PetscInt r = 0; r < keys->n_runs; ++r) fprintf(out, " %*.*s", width, WIDE, value_of(keys, k, r));
     fprintf(out, "%s%s\n", unit ? "  " : "", unit ? unit : "");
   }
   if (keys->n > SHOWN_KEYS) fprintf(out, "... and %d more (keys.csv)\n", (int)keys->n - SHOWN_KEYS);
@@ -89,9 +89,17 @@ static void print_lack(FILE *out, const Comparison *c, const CompareRow *row, Pe
   fprintf(out, ", where %s has one\n", with->folder);
 }
 
-/* What the numbers do not say: where there are none, and when those of searches are from. */
+static void print_scale(FILE *out, const Comparison *c)
+{
+  PetscBool any = PETSC_FALSE;
+  for (PetscInt i = 0; i < c->n_rows; ++i) any = (PetscBool)(any || c->rows[i].scale > 0);
+  if (any) fputs("Energies are relative to the largest energy of both runs; a balance is a share already.\n", out);
+}
+
+/* What the numbers do not say: what some are relative to, where there are none, and when those of searches are from. */
 static void print_remarks(FILE *out, const Comparison *c)
 {
+  print_scale(out, c);
   for (PetscInt i = 0; i < c->n_rows; ++i) {
     const CompareRow *row = &c->rows[i];
     if (row->found)

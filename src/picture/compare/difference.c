@@ -55,9 +55,9 @@ static PetscReal next_time(const Walker *a, const Walker *b, PetscReal end)
   return PetscMin(PetscMin(of_a, of_b), end);
 }
 
-PetscReal difference_relative(const Difference *d)
+PetscReal difference_relative_to(const Difference *d, PetscReal size)
 {
-  return d->largest == 0 ? 0 : d->size > 0 ? PetscAbsReal(d->largest) / d->size : INFINITY;
+  return d->largest == 0 ? 0 : size > 0 ? PetscAbsReal(d->largest) / size : INFINITY;
 }
 
 PetscBool curve_difference(const Curve *a, const Curve *b, Difference *d)
@@ -78,6 +78,6 @@ PetscBool curve_difference(const Curve *a, const Curve *b, Difference *d)
     if (PetscAbsReal(d->last) > PetscAbsReal(d->largest)) d->largest = d->last, d->at = t;
     if (t >= d->to) break;
   }
-  d->relative = difference_relative(d);
+  d->relative = difference_relative_to(d, d->size);
   return PETSC_TRUE;
 }

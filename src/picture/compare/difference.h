@@ -20,5 +20,5 @@ typedef struct {
 /* Both curves are linear between their entries, so that their difference is largest at one of the times of either
  * one: nothing is missed. PETSC_FALSE if they have no time in common. */
 PetscBool curve_difference(const Curve *a, const Curve *b, Difference *difference);
-/* |largest| / size of a difference. */
-PetscReal difference_relative(const Difference *difference);
+/* |largest| of a difference over a size, its own or another. */
+PetscReal difference_relative_to(const Difference *difference, PetscReal size);

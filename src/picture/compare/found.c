@@ -22,6 +22,6 @@ PetscBool curve_found_difference(const Curve *a, const Curve *b, Difference *d)
                     .largest = apart,
                     .last = apart};
   d->at = d->to;
-  d->relative = difference_relative(d);
+  d->relative = difference_relative_to(d, d->size);
   return PETSC_TRUE;
 }

@@ -41,13 +41,25 @@ static PetscBool plain_values(const YamlNode *node)
   return node->kind == YAML_SEQUENCE;
 }
 
-/* A mapping is a value if it is empty: `basis: {cell: {}}`. */
+/* Points of an amplitude, corners of a polygon. */
+static PetscBool is_table(const YamlNode *node)
+{
+  for (PetscInt i = 0; i < node->n; ++i)
+    if (!plain_values(node->child[i])) return PETSC_FALSE;
+  return (PetscBool)(node->kind == YAML_SEQUENCE && node->n > 0);
+}
+
+/* A mapping is a value if it is empty: `basis: {cell: {}}`. Depth: that of a table. */
+// NOLINTNEXTLINE(misc-no-recursion)
 static void write_value(FILE *out, const YamlNode *node)
 {
   if (node->kind == YAML_SCALAR) fputs(node->text, out);
   else if (node->kind == YAML_SEQUENCE) {
     fputc('[', out);
-    for (PetscInt i = 0; i < node->n; ++i) fprintf(out, "%s%s", i ? ", " : "", node->child[i]->text);
+    for (PetscInt i = 0; i < node->n; ++i) {
+      if (i) fputs(", ", out);
+      write_value(out, node->child[i]);
+    }
     fputc(']', out);
   } else fputs("{}", out);
 }
@@ -60,7 +72,7 @@ static PetscErrorCode Walk(const YamlNode *node, PetscInt run, Table *t)
   TextStream stream;
 
   PetscFunctionBeginUser;
-  if (node->kind != YAML_SCALAR && node->n > 0 && !plain_values(node)) {
+  if (node->kind != YAML_SCALAR && node->n > 0 && !plain_values(node) && !is_table(node)) {
     for (PetscInt i = 0; i < node->n; ++i) PetscCall(Walk(node->child[i], run, t));
     PetscFunctionReturn(0);
   }
@@ -83,26 +95,51 @@ static PetscBool is_idle(const char *key)
   return PETSC_FALSE;
 }
 
-static PetscErrorCode ReadCase(const char *folder, PetscInt run, Table *t, PetscBool *read)
+/* The case of a run; NULL: there is none that can be read. */
+static PetscErrorCode OpenCase(const char *folder, YamlDocument **document)
 {
   char path[FILE_PATH], reason[256], *text;
   size_t size;
-  YamlDocument *document = NULL;
   Diag *ignored;
 
   PetscFunctionBeginUser;
-  *read = PETSC_FALSE;
+  *document = NULL;
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/case.yaml", folder));
   if (!file_exists(folder, "case.yaml")) PetscFunctionReturn(0);
   PetscCall(FileReadEverywhere(PETSC_COMM_SELF, path, &size, &text, reason));
   if (reason[0]) PetscFunctionReturn(0);
   PetscCall(DiagCreate(&ignored));
-  PetscCall(YamlCreate(path, text, size, ignored, &document));
-  if (document->root) PetscCall(Walk(document->root, run, t));
-  *read = document->root != NULL;
-  PetscCall(YamlDestroy(&document));
+  PetscCall(YamlCreate(path, text, size, ignored, document));
   PetscCall(DiagDestroy(&ignored));
   PetscCall(PetscFree(text));
+  if (!(*document)->root) PetscCall(YamlDestroy(document));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode ReadCase(const char *folder, PetscInt run, Table *t, PetscBool *read)
+{
+  YamlDocument *document;
+
+  PetscFunctionBeginUser;
+  PetscCall(OpenCase(folder, &document));
+  *read = (PetscBool)(document != NULL);
+  if (!document) PetscFunctionReturn(0);
+  PetscCall(Walk(document->root, run, t));
+  PetscCall(YamlDestroy(&document));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode KeysMeasureIs(const char *folder, const char *name, const char *kind, const char *word, PetscBool *is)
+{
+  YamlDocument *document;
+
+  PetscFunctionBeginUser;
+  *is = PETSC_FALSE;
+  PetscCall(OpenCase(folder, &document));
+  if (!document) PetscFunctionReturn(0);
+  const YamlNode *value = yaml_find(yaml_find(yaml_find(document->root, "measures"), name), kind);
+  *is = (PetscBool)(value && value->kind == YAML_SCALAR && !strcmp(value->text, word));
+  PetscCall(YamlDestroy(&document));
   PetscFunctionReturn(0);
 }
 
@@ -112,6 +149,74 @@ static PetscBool row_differs(const Table *t, PetscInt at)
   for (PetscInt r = 1; r < t->n_runs; ++r)
     if (!value[0] != !value[r] || (value[0] && strcmp(value[0], value[r]))) return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+#define WHOLE 40 /* letters of a table that is shown as it is */
+
+/* The next point of a table that is written out, and how many letters it has; NULL behind the last. */
+static const char *next_point(const char *at, int *length)
+{
+  const char *begin = strchr(at, '['), *end = begin ? strchr(begin, ']') : NULL;
+  *length = end ? (int)(end - begin) + 1 : 0;
+  return end ? begin : NULL;
+}
+
+static PetscInt count_points(const char *table)
+{
+  PetscInt n = 0;
+  int length;
+  for (const char *at = table + 1; (at = next_point(at, &length)); at += length) ++n;
+  return n;
+}
+
+/* Point k of a table, of `length` letters; "-" where it has fewer. */
+static const char *point_of(const char *table, PetscInt k, int *length)
+{
+  const char *at = table + 1;
+  for (PetscInt i = 0; (at = next_point(at, length)); ++i, at += *length)
+    if (i == k) return at;
+  *length = 1;
+  return "-";
+}
+
+static PetscBool is_table_text(const char *value) { return (PetscBool)(value && !strncmp(value, "[[", 2)); }
+
+/* The first point that is not the same in all runs that have the table. */
+static PetscInt first_other(char *const *value, PetscInt n_runs)
+{
+  for (PetscInt k = 0;; ++k) {
+    const char *first = NULL, *point;
+    int length = 0, its;
+    for (PetscInt r = 0; r < n_runs; ++r) {
+      if (!is_table_text(value[r])) continue;
+      point = point_of(value[r], k, &its);
+      if (first && (its != length || strncmp(first, point, (size_t)its) != 0)) return k;
+      if (!first) first = point, length = its;
+    }
+    if (!first || first[0] == '-') return -1;
+  }
+}
+
+/* Of tables too long for a line of a table: how many points, and the first that is another. */
+static PetscErrorCode Shorten(char **value, PetscInt n_runs)
+{
+  PetscBool longer = PETSC_FALSE;
+  char text[128];
+  int length;
+
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < n_runs; ++r)
+    longer = (PetscBool)(longer || (is_table_text(value[r]) && strlen(value[r]) > WHOLE));
+  const PetscInt k = longer ? first_other(value, n_runs) : -1;
+  for (PetscInt r = 0; r < n_runs && longer; ++r) {
+    if (!is_table_text(value[r])) continue;
+    const char *point = k < 0 ? NULL : point_of(value[r], k, &length);
+    const int used = snprintf(text, sizeof text, "%d points", (int)count_points(value[r]));
+    if (point) snprintf(text + used, sizeof text - (size_t)used, ", [%d]: %.*s", (int)k, PetscMin(length, 80), point);
+    PetscCall(PetscFree(value[r]));
+    PetscCall(PetscStrallocpy(text, &value[r]));
+  }
+  PetscFunctionReturn(0);
 }
 
 /* Keep the rows that differ, free the others. */
@@ -128,6 +233,7 @@ static PetscErrorCode Keep(Table *t, PetscBool any)
       if (kept) t->value[t->n * t->n_runs + r] = *value;
       else PetscCall(PetscFree(*value));
     }
+    if (kept) PetscCall(Shorten(t->value + t->n * t->n_runs, t->n_runs));
     if (kept) t->key[t->n++] = t->key[i];
     else PetscCall(PetscFree(t->key[i]));
   }
@@ -141,7 +247,7 @@ PetscErrorCode KeysDiffer(PetscInt n_runs, const char *const *folders, Differing
 
   PetscFunctionBeginUser;
   for (PetscInt r = 0; r < n_runs; ++r) {
-    PetscBool read;
+    PetscBool read = PETSC_FALSE;
     PetscCall(ReadCase(folders[r], r, &t, &read));
     all = all && read;
   }
