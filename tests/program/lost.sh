@@ -101,7 +101,7 @@ says err.txt "the transfer between points and grid took 8.8 % of the energy that
 block >fall.yaml
 expect "a fall" 0 "$talus" run fall.yaml --out fall --quiet --set grid.size=0.25
 says err.txt "warning: the transfer between points and grid took " " % of the energy that came in (" "an energy balance near 0 does not show it" \
-  'hint: elastic bodies keep it with `analysis: {transfer: consistent}`'
+  'hint: elastic bodies keep it with `analysis: {transfer: consistent, scheme: midpoint}`'
 expect "list measures" 0 "$talus" list measures
 says out.txt "outside " "outside_momentum "
 expect "of a body" 2 "$talus" check fly.yaml --set 'measures.mass.of={body: gone}'

@@ -72,7 +72,8 @@ static void check_pairs(const Case *c, Diag *diag)
       if (case_interface(c, a, b, &first) >= 0 || case_field(c, a) == case_field(c, b)) continue;
       diag_error(diag, "interfaces", "nothing says how '%s' and '%s' meet: other interfaces keep them apart",
                  c->bodies[a].name, c->bodies[b].name);
-      diag_hint(diag, "- {name: ..., between: [%s, %s]}", c->bodies[a].name, c->bodies[b].name);
+      diag_hint(diag, "- {name: ..., between: [%s, %s]}, of any law if they never touch", c->bodies[a].name,
+                c->bodies[b].name);
     }
 }
 

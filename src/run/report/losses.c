@@ -125,6 +125,13 @@ static PetscReal taken_by_transfer(const Model *m)
   return cancels ? sum : m->transfer_energy;
 }
 
+/* Statics of points of no extent, where these could have one. */
+static PetscBool loses_at_lines(const Model *m)
+{
+  return (PetscBool)(m->method->restores_grid && case_is_static(&m->c->analysis) && m->grid->box &&
+                     !strcmp(m->c->basis.kind, "cell"));
+}
+
 static void warn_of_transfer(const Model *m, Diag *diag)
 {
   const PetscReal taken = taken_by_transfer(m), share = share_of_input(m, taken);
@@ -139,7 +146,9 @@ static void warn_of_transfer(const Model *m, Diag *diag)
     share > 0 ? "took" : "gave", (double)(100 * PetscAbsReal(share)), (double)PetscAbsReal(taken),
     (double)m->most_energy);
   if (implicit && m->space->transfer == transfers[0] && !materials_yield(m->c->n_materials, m->materials))
-    diag_hint(diag, "elastic bodies keep it with `analysis: {transfer: consistent}` (docs/theory.md, Energy)");
+    diag_hint(
+      diag,
+      "elastic bodies keep it with `analysis: {transfer: consistent, scheme: midpoint}` (docs/theory.md, Energy)");
   else if (m->contact && m->c->analysis.type == ANALYSIS_EXPLICIT)
     diag_hint(diag,
               "springs of what touches store a part of it, and their dashpots take what swings until it rests; smaller "
@@ -149,6 +158,10 @@ static void warn_of_transfer(const Model *m, Diag *diag)
       diag,
       "steps in which contact opens, closes or begins to slide count its work by the mean of their ends: shorter "
       "ones lessen it; measure {energy: transfer} shows when (docs/theory.md, Energy)");
+  else if (loses_at_lines(m))
+    diag_hint(diag,
+              "points that cross lines of the grid lose it, more of them with smaller cells and steps: `basis: "
+              "{gimp: {}}` (docs/guide/choose.md)");
   else
     diag_hint(diag,
               "smaller cells where bodies meet and smaller steps lessen it; measure {energy: transfer} shows when "
