@@ -5,12 +5,13 @@
 #include <string.h>
 #include "base/math/tensor.h"
 
-/* Volume, and of density 1: integrals of x and of x x^T about the origin. */
+/* Volume, and of density 1: integrals of x and of x x^T about a place of the shape's own. About the origin of a map what
+ * is small would be a difference of what is large. */
 typedef struct {
-  PetscReal volume, first[3], second[9];
+  PetscReal about[3], volume, first[3], second[9];
 } Moments;
 
-/* Sum into m what the simplex of the origin and `corners` corners holds, of volume v. */
+/* Sum into m what the simplex of that place and `corners` corners, seen from there, holds, of volume v. */
 static void add_simplex(int corners, const PetscReal (*x)[3], PetscReal v, Moments *m)
 {
   const PetscReal n = corners + 1;
@@ -29,13 +30,15 @@ static void add_simplex(int corners, const PetscReal (*x)[3], PetscReal v, Momen
 /* Closed facets, their normals outwards. */
 static void of_facets(const Facets *f, Moments *m)
 {
+  for (PetscInt d = 0; d < f->dim && f->n; ++d) m->about[d] = f->corner[0][0][d];
   for (PetscInt i = 0; i < f->n; ++i) {
-    const PetscReal(*x)[3] = (const PetscReal(*)[3])f->corner[i];
-    PetscReal along = 0, area[3];
+    PetscReal x[3][3] = {{0}}, along = 0, area[3];
+    for (PetscInt k = 0; k < f->dim; ++k)
+      for (PetscInt d = 0; d < f->dim; ++d) x[k][d] = f->corner[i][k][d] - m->about[d];
     if (f->dim == 2) {
       const PetscReal side = hypot(x[1][0] - x[0][0], x[1][1] - x[0][1]);
       for (int d = 0; d < 2; ++d) along += x[0][d] * f->normal[i][d];
-      add_simplex(2, x, along * side / 2, m);
+      add_simplex(2, (const PetscReal(*)[3])x, along * side / 2, m);
       continue;
     }
     for (int d = 0; d < 3; ++d) {
@@ -43,7 +46,7 @@ static void of_facets(const Facets *f, Moments *m)
       area[d] = (x[1][j] - x[0][j]) * (x[2][k] - x[0][k]) - (x[1][k] - x[0][k]) * (x[2][j] - x[0][j]);
       along += area[d] * x[0][d];
     }
-    add_simplex(3, x, along / 6, m);
+    add_simplex(3, (const PetscReal(*)[3])x, along / 6, m);
   }
 }
 
@@ -64,39 +67,33 @@ static void of_section(const Form *f, Moments *m)
       across += PETSC_PI / 4 * r * r * r * r * dr;
     }
   }
-  const PetscReal *a = f->direction, *b = f->base;
+  const PetscReal *a = f->direction;
   m->volume += along[0];
-  for (int d = 0; d < 3; ++d) m->first[d] += along[0] * b[d] + along[1] * a[d];
+  for (int d = 0; d < 3; ++d) m->about[d] = f->base[d], m->first[d] += along[1] * a[d];
   for (int i = 0; i < 9; ++i) {
     const int d = i / 3, e = i % 3;
-    m->second[i] += across * ((d == e) - a[d] * a[e]) + along[2] * a[d] * a[e] + along[0] * b[d] * b[e] +
-                    along[1] * (a[d] * b[e] + b[d] * a[e]);
+    m->second[i] += across * ((d == e) - a[d] * a[e]) + along[2] * a[d] * a[e];
   }
 }
 
 static void of_box(const Form *f, Moments *m)
 {
-  PetscReal centre[3] = {0, 0, 0}, square[3] = {0, 0, 0};
   m->volume = 1;
   for (PetscInt d = 0; d < f->dim; ++d) {
-    const PetscReal side = f->shape->max[d] - f->shape->min[d];
-    m->volume *= side;
-    centre[d] = (f->shape->max[d] + f->shape->min[d]) / 2;
-    square[d] = side * side / 12;
+    m->volume *= f->shape->max[d] - f->shape->min[d];
+    m->about[d] = (f->shape->max[d] + f->shape->min[d]) / 2;
   }
-  for (int d = 0; d < 3; ++d) m->first[d] = m->volume * centre[d];
-  for (int i = 0; i < 9; ++i) m->second[i] = m->volume * (centre[i / 3] * centre[i % 3] + (i % 4 ? 0 : square[i / 4]));
+  for (PetscInt d = 0; d < f->dim; ++d)
+    m->second[4 * d] = m->volume * PetscSqr(f->shape->max[d] - f->shape->min[d]) / 12;
 }
 
 static void of_ball(const Form *f, Moments *m)
 {
-  const PetscReal r = f->shape->radius, *c = f->shape->centre;
+  const PetscReal r = f->shape->radius;
   m->volume = f->dim == 2 ? PETSC_PI * r * r : 4. / 3 * PETSC_PI * r * r * r;
-  for (int d = 0; d < f->dim; ++d) m->first[d] = m->volume * c[d];
-  for (int i = 0; i < 9; ++i) {
-    const PetscBool own = i % 4 == 0 && i / 4 < f->dim;
-    m->second[i] =
-      m->volume * ((i / 3 < f->dim && i % 3 < f->dim ? c[i / 3] * c[i % 3] : 0) + (own ? r * r / (f->dim + 2) : 0));
+  for (int d = 0; d < f->dim; ++d) {
+    m->about[d] = f->shape->centre[d];
+    m->second[4 * d] = m->volume * r * r / (f->dim + 2);
   }
 }
 
@@ -139,9 +136,9 @@ PetscBool wall_volume(const Walls *walls, PetscInt k, WallInertia *inertia)
   *inertia = (WallInertia){0};
   if (!f || walls->wall[k].spec->inside || !moments_of(f, &m)) return PETSC_FALSE;
   inertia->mass = m.volume;
-  for (int d = 0; d < 3; ++d) inertia->centre[d] = m.first[d] / m.volume;
+  for (int d = 0; d < 3; ++d) inertia->centre[d] = m.about[d] + m.first[d] / m.volume;
   if (f->axis) return PETSC_TRUE; /* which does not turn */
-  for (int i = 0; i < 9; ++i) m.second[i] -= m.volume * inertia->centre[i / 3] * inertia->centre[i % 3];
+  for (int i = 0; i < 9; ++i) m.second[i] -= m.first[i / 3] * m.first[i % 3] / m.volume;
   const PetscReal trace = m.second[0] + m.second[4] + m.second[8];
   for (int i = 0; i < 9; ++i) inertia->inertia[i] = (i % 4 ? 0 : trace) - m.second[i];
   return PETSC_TRUE;

@@ -316,11 +316,14 @@ static PetscErrorCode FillSets(Grid *grid, const MeshPart *in, const Arrivals *a
 /* The search trees, for the nodes where they are. */
 static PetscErrorCode SearchTrees(Grid *grid)
 {
-  PetscReal size = 0;
+  PetscReal size = 0, far = 0; /* coordinates of maps are rounded by more than the mesh is */
 
   PetscFunctionBeginUser;
-  for (PetscInt d = 0; d < grid->dim; ++d) size = PetscMax(size, grid->max[d] - grid->min[d]);
-  grid->mesh->tolerance = PetscMax(1e-10, 2e-12 * size / grid->smallest);
+  for (PetscInt d = 0; d < grid->dim; ++d) {
+    size = PetscMax(size, grid->max[d] - grid->min[d]);
+    far = PetscMax(far, PetscMax(PetscAbsReal(grid->min[d]), PetscAbsReal(grid->max[d])));
+  }
+  grid->mesh->tolerance = PetscMax(1e-10, (2e-12 * size + 1e-14 * far) / grid->smallest);
   PetscCall(MeshCellTree(grid, &grid->mesh->cell_tree));
   PetscCall(MeshFaceTree(grid, &grid->mesh->face_tree));
   PetscFunctionReturn(0);

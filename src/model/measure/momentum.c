@@ -22,7 +22,8 @@ static PetscReal angular_momentum(const Model *m, const MeasureSpec *s, PetscInt
   return sum;
 }
 
-/* Mass, and its first and second moments; momentum, and its moment about the origin. In two dimensions z is 0. */
+/* Mass, and its first and second moments; momentum, and its moment about the middle of the grid: about the origin of a
+ * map what is small would be a difference of what is large. In two dimensions z is 0. */
 enum { MASS, PLACE, SQUARES = PLACE + 3, MOMENTUM = SQUARES + 9, TURNING = MOMENTUM + 3, MOMENTS = TURNING + 3 };
 
 /* Of this rank. */
@@ -32,7 +33,7 @@ static void sum_moments(const Model *m, const MeasureSpec *s, PetscInt body, Pet
     const PetscReal mass = measure_share(m, s, body, p) * m->points->real[POINT_MASS][p];
     PetscReal x[3] = {0, 0, 0}, v[3] = {0, 0, 0};
     for (PetscInt d = 0; d < m->dim; ++d) {
-      x[d] = point_real(m->points, POINT_X, p)[d];
+      x[d] = point_real(m->points, POINT_X, p)[d] - 0.5 * (m->grid->min[d] + m->grid->max[d]);
       v[d] = point_real(m->points, POINT_V, p)[d];
     }
     q[MASS] += mass;
