@@ -5,8 +5,8 @@
 #include <string.h>
 #include "base/math/tensor.h"
 
-/* Volume, and of density 1: integrals of x and of x x^T about a place of the shape's own. About the origin of a map what
- * is small would be a difference of what is large. */
+/* Volume, and of density 1: integrals of x and of x x^T about a place of the shape's own. About the origin of a map
+ * what is small would be a difference of what is large. */
 typedef struct {
   PetscReal about[3], volume, first[3], second[9];
 } Moments;
