@@ -260,6 +260,15 @@ PetscBool case_writes(const Case *c, const char *field)
   return PETSC_FALSE;
 }
 
+PetscInt case_height_axis(const Case *c)
+{
+  const PetscInt dim = kinematics_dim(c->kinematics);
+  PetscInt axis = dim - 1;
+  for (PetscInt d = 0; d < dim; ++d)
+    if (PetscAbsReal(c->gravity[d]) > PetscAbsReal(c->gravity[axis])) axis = d;
+  return axis;
+}
+
 PetscBool body_has_stress(const BodySpec *body) { return body->has_k0 || body->has_stress; }
 
 PetscBool case_has_stress(const Case *c)

@@ -115,6 +115,8 @@ PetscBool case_raises_displacement(const Case *c);
 const MotionSpec *case_raised_motion(const Case *c);
 /* Is that the amplitude of what is raised to its limit? */
 PetscBool case_raises(const Case *c, const Amplitude *amplitude);
+/* The axis that gravity is nearest to; without any the last. */
+PetscInt case_height_axis(const Case *c);
 PetscBool case_has_stress(const Case *c); /* does any body start with one? */
 /* Is an equilibrium sought before its first step? Of stages that of the first. */
 PetscBool case_equilibrates(const Case *c);

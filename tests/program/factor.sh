@@ -195,4 +195,27 @@ says err.txt "static.yaml:3:" "belongs to \`type: factor-of-safety\`"
 sed 's/^materials:/  - {name: other, shape: {box: {min: [0, 0], max: [0.5, 0.5]}}, points_per_cell: 4, material: soil}\n&/' block.yaml >two.yaml
 expect "a material of both" 2 "$talus" run two.yaml --out bad --set 'analysis.reduction.bodies=[block]'
 says err.txt "'other' is to keep its strength, but its material 'soil'"
+# A cut of a metre (4.46 by a log spiral, 4.66 by a wedge, and what cells of a quarter of a metre add) on ground that cannot
+# fail: it slides, and rests again, by less than the ground is high. Eight metres of that made 9 of it.
+cat >cut.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: factor-of-safety, steps: 5, reduction: {step: 0.1, most: 10}}
+grid: {box: {min: [0, -8], max: [4, 1.5]}, size: 0.25}
+bodies:
+  - {name: f, shape: {box: {min: [0, 0], max: [2, 1]}}, material: f}
+  - {name: g, shape: {box: {min: [0, -8], max: [4, 0]}}, material: g}
+materials:
+  f: {law: mohr-coulomb, density: 1900, young: 5e7, poisson: 0.3, friction_angle: 25, cohesion: 2e4}
+  g: {law: mohr-coulomb, density: 1900, young: 5e7, poisson: 0.3, friction_angle: 40, cohesion: 1e6}
+boundary: [{on: {boundary: bottom}, fix: [x, y]}, {on: {boundary: left}, fix: [x]}, {on: {boundary: right}, fix: [x]}]
+loads: {gravity: [0, -10]}
+measures: {F: {factor_of_safety: value}}
+END
+for ranks in 1 3; do
+  expect "a cut on deep ground on $ranks" 0 on_ranks $ranks "$talus" run cut.yaml --out run --force
+  awk -F, 'END { exit !($3 > 4.9 && $3 < 5.2) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
+  says out.txt "and beyond slides: "
+done
+
 finish

@@ -167,19 +167,42 @@ void strength_go_on(Model *m, const Model *before, Diag *diag)
                (double)before->c->analysis.reduction.most);
 }
 
+static PetscReal increment_of(const Model *m, PetscInt node)
+{
+  PetscReal square = 0;
+  for (PetscInt d = 0; d < m->dim; ++d) square += PetscSqr(m->nodes->du[node * m->dim + d]);
+  return PetscSqrtReal(square);
+}
+
 PetscErrorCode LargestIncrement(const Model *m, PetscReal *largest)
 {
   PetscReal local = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
-    PetscReal square = 0;
-    if (m->system->row[node] < 0) continue;
-    for (PetscInt d = 0; d < m->dim; ++d) square += PetscSqr(m->nodes->du[node * m->dim + d]);
-    local = PetscMax(local, square);
-  }
+  for (PetscInt node = 0; node < m->grid->n_owned; ++node)
+    if (m->system->row[node] >= 0) local = PetscMax(local, increment_of(m, node));
   PetscCall(MPIU_Allreduce(&local, largest, 1, MPIU_REAL, MPIU_MAX, m->comm));
-  *largest = PetscSqrtReal(*largest);
+  PetscFunctionReturn(0);
+}
+
+#define GOES_ALONG 0.5 /* of the largest increment: with so much a node is of what moves */
+#define LEAST_CELLS 2  /* what is lower than so many cells is not resolved */
+
+PetscErrorCode MovingHeight(const Model *m, PetscReal *height)
+{
+  PetscReal largest, local[2] = {-PETSC_MAX_REAL, -PETSC_MAX_REAL}, all[2]; /* highest, and minus the lowest */
+  const PetscInt axis = case_height_axis(m->c);
+
+  PetscFunctionBeginUser;
+  PetscCall(LargestIncrement(m, &largest));
+  for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
+    const PetscReal x = m->grid->x[node * m->dim + axis];
+    if (m->system->row[node] < 0 || increment_of(m, node) < GOES_ALONG * largest) continue;
+    local[0] = PetscMax(local[0], x);
+    local[1] = PetscMax(local[1], -x);
+  }
+  PetscCall(MPIU_Allreduce(local, all, 2, MPIU_REAL, MPIU_MAX, m->comm));
+  *height = PetscMax(all[0] + all[1], LEAST_CELLS * m->grid->smallest);
   PetscFunctionReturn(0);
 }
 

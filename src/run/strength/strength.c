@@ -5,7 +5,10 @@
 /* What slides goes so many of its heights farther for a factor larger by one; what stands does not. */
 #define SLIDES 0.1
 #define ALL_DISSIPATED 0.99
-#define EASY 8 /* Newton's iterations after which the next step is larger */
+#define SLIDES_LONG 0.05 /* by so much a factor grows while what moves slides by its own height, */
+#define SLIDES_FAR 0.01  /* or so many of its heights it goes, in tries, */
+#define SLIDES_TRIES 3   /* at least so many, before it is called so */
+#define EASY 8           /* Newton's iterations after which the next step is larger */
 
 static const char unfinished[] = "the search was ended before it was over";
 static const char *const outcome_words[TRY_N] = {"stands", "slides", "runs", "lost"};
@@ -50,6 +53,7 @@ static PetscErrorCode Look(Model *m, Try *try)
 
   PetscFunctionBeginUser;
   PetscCall(LargestDisplacement(m, &try->displacement));
+  if (try->factor > 0) PetscCall(MovingHeight(m, &try->height));
   PetscCall(ModelEnergies(m, &energies));
   try->dissipated = energies.dissipated + energies.friction;
   try->work = energies.external;
@@ -60,11 +64,9 @@ static PetscErrorCode Look(Model *m, Try *try)
 static PetscErrorCode Height(const Model *m, PetscReal *height)
 {
   PetscReal low = PETSC_MAX_REAL, high = -PETSC_MAX_REAL, all[2];
-  PetscInt axis = m->dim - 1;
+  const PetscInt axis = case_height_axis(m->c);
 
   PetscFunctionBeginUser;
-  for (PetscInt d = 0; d < m->dim; ++d)
-    if (PetscAbsReal(m->c->gravity[d]) > PetscAbsReal(m->c->gravity[axis])) axis = d;
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal x = point_real(m->points, POINT_X, p)[axis];
     low = PetscMin(low, x);
@@ -123,6 +125,55 @@ static PetscErrorCode TryLarger(const StrengthRun *s, Model *m, Try *try, StepRe
   PetscFunctionReturn(0);
 }
 
+/* The last that stood before try i > 0. */
+static PetscInt stood_before(const StrengthRun *s, PetscInt i)
+{
+  for (--i; i > 0 && s->tries[i].outcome != TRY_STANDS;) --i;
+  return i;
+}
+
+/* Did what moved in try i, which stands, go as far as what slides, by its own height? */
+static PetscBool goes_on(const StrengthRun *s, PetscInt i)
+{
+  const Try *before = s->tries + stood_before(s, i), *now = s->tries + i;
+  return (PetscBool)(now->moved > SLIDES * now->height * (now->factor - before->factor));
+}
+
+/* Is the slide of so many tries, after the one that stood, a long one? */
+static PetscBool is_long(const StrengthRun *s, PetscInt stood, PetscInt tries)
+{
+  const Try *before = s->tries + stood, *last = s->tries + s->n - 1;
+  const PetscBool far = (PetscBool)(last->displacement - before->displacement > SLIDES_FAR * last->height);
+  return (PetscBool)(tries >= SLIDES_TRIES && (far || last->factor > (1 + SLIDES_LONG) * before->factor));
+}
+
+/* What is low beside all that is there slides, and rests again, by less than that would: a step of a metre on 16
+ * m of ground crept 1.6 m for a factor of one, up to nine. Each try of that stands. So where what moves has gone on by
+ * its own height in all tries of a long slide, it has been sliding since the first of them. */
+static PetscErrorCode SeeLongSlide(StrengthRun *s, RunDir *dir)
+{
+  const Try *last = s->tries + s->n - 1;
+  PetscInt first = s->n - 1, tries = 0;
+
+  PetscFunctionBeginUser;
+  if (last->outcome != TRY_STANDS) PetscFunctionReturn(0);
+  for (PetscInt i = first; i > 1 && s->tries[stood_before(s, i)].factor > 0 && goes_on(s, i); i = stood_before(s, i))
+    first = i, ++tries;
+  const PetscInt stood = stood_before(s, first);
+  if (!is_long(s, stood, tries)) PetscFunctionReturn(0);
+  PetscCall(RunDirLog(dir,
+                      "factor = %.5g and beyond slides: %.3g m up to %.5g, and what moves is %.3g m high; the state is "
+                      "that of the last",
+                      (double)s->tries[first].factor, (double)(last->displacement - s->tries[stood].displacement),
+                      (double)last->factor, (double)last->height));
+  s->search.stable = s->tries[stood].factor;
+  s->search.failed = s->tries[first].factor;
+  s->search.over = 1;
+  for (PetscInt i = first; i < s->n; ++i)
+    if (s->tries[i].outcome == TRY_STANDS) s->tries[i].outcome = TRY_SLIDES;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode StrengthTry(StrengthRun *s, Model *m, RunDir *dir, StepReport *report)
 {
   const ReductionSpec *spec = &m->c->analysis.reduction;
@@ -142,8 +193,9 @@ PetscErrorCode StrengthTry(StrengthRun *s, Model *m, RunDir *dir, StepReport *re
   PetscCall(Look(m, &try));
   PetscCall(Append(s, &try));
   search_tell(&s->search, spec, try.factor, outcome, report->newton.iterations <= EASY);
-  know_bracket(s, m);
   PetscCall(Tell(&try, report, dir));
+  PetscCall(SeeLongSlide(s, dir));
+  know_bracket(s, m);
   PetscFunctionReturn(0);
 }
 
@@ -189,13 +241,6 @@ static PetscBool slides(const StrengthRun *s, PetscInt i)
 
 static PetscBool stands(const StrengthRun *s, PetscInt i) { return s->tries[i].outcome == TRY_STANDS; }
 static PetscBool fails(const StrengthRun *s, PetscInt i) { return !balances(s, i); }
-
-/* The last that stood before try i > 0. */
-static PetscInt stood_before(const StrengthRun *s, PetscInt i)
-{
-  for (--i; i > 0 && !stands(s, i);) --i;
-  return i;
-}
 
 /* The part of the work of loads and gravity since the last stable state that was dissipated; all of it
  * where nothing more is stored. */

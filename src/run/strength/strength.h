@@ -14,8 +14,9 @@ typedef struct {
   PetscReal displacement; /* the largest of a point since the start, in the last stable state, m */
   PetscReal dissipated;   /* by plastic flow and friction since the start, there, J */
   PetscReal work;         /* of loads and gravity since the start, there, J */
+  PetscReal height;       /* of what moves, against gravity, m */
 } Try;
-#define TRY_NUMBERS 7
+#define TRY_NUMBERS 8
 
 typedef struct {
   Search search;

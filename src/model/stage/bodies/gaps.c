@@ -22,11 +22,8 @@ typedef struct {
 
 static void choose_axis(const Model *m, Columns *s)
 {
-  s->axis = m->dim - 1;
-  s->sign = 1;
-  for (PetscInt d = 0; d < m->dim; ++d)
-    if (PetscAbsReal(m->c->gravity[d]) > PetscAbsReal(m->c->gravity[s->axis])) s->axis = d;
-  if (m->c->gravity[s->axis] > 0) s->sign = -1;
+  s->axis = case_height_axis(m->c);
+  s->sign = m->c->gravity[s->axis] > 0 ? -1 : 1;
 }
 
 /* Of the parts of points: no column of a body may be without any. */
