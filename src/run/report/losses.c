@@ -149,6 +149,10 @@ static void warn_of_transfer(const Model *m, Diag *diag)
     diag_hint(
       diag,
       "elastic bodies keep it with `analysis: {transfer: consistent, scheme: midpoint}` (docs/theory.md, Energy)");
+  else if (implicit && m->space->transfer == transfers[0] && share < 0)
+    diag_hint(diag,
+              "steps much shorter than a wave takes through a cell make it: longer ones, or `analysis: {transfer: "
+              "consistent}` (docs/guide/limits.md)");
   else if (m->contact && m->c->analysis.type == ANALYSIS_EXPLICIT)
     diag_hint(diag,
               "springs of what touches store a part of it, and their dashpots take what swings until it rests; smaller "
