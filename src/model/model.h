@@ -265,8 +265,8 @@ PetscErrorCode ModelRaise(Model *model, PetscReal control, StepReport *report);
  * was, and report->leap says how far it slid, if that was why. *moved: the largest increment of a node,
  * m; where Newton gave up, its last one. */
 PetscErrorCode ModelTryFactor(Model *model, PetscReal factor, StepReport *report, PetscReal *moved);
-/* Collective. How high that is which moves in the last step, along the axis that gravity is nearest to, m: nodes that go
- * half as far as the farthest, and two cells at least. */
+/* Collective. How high that is which moves in the last step, along the axis that gravity is nearest to, m: nodes that
+ * go half as far as the farthest, and two cells at least. */
 PetscErrorCode MovingHeight(const Model *model, PetscReal *height);
 /* Collective. Value of one measure of the case now. */
 PetscErrorCode ModelMeasure(Model *model, const MeasureSpec *measure, PetscInt index, PetscReal *value);

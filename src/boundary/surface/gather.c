@@ -120,8 +120,8 @@ static void make_piece(const Gather *g, PetscReal along[2][3], FacePoint *p)
     for (int d = 0; d < 3; ++d) p->edge[k][d] = along[k][d];
 }
 
-/* Is there anything? The end of a surface of the next cell is as wide as round-off or the selector's tolerance, and what
- * lies on the axis of rings has no area. */
+/* Is there anything? The end of a surface of the next cell is as wide as round-off or the selector's tolerance, and
+ * what lies on the axis of rings has no area. */
 static PetscBool is_something(const Gather *g, PetscReal size, const PieceSum *sum)
 {
   const PetscReal whole = PetscPowReal(size, (PetscReal)(g->body->grid->dim - 1));

@@ -134,8 +134,8 @@ static void note_unstable(Model *m, PetscReal before, const NewtonReport *newton
   m->unstable.ways = PetscMax(m->unstable.ways, newton->negative);
 }
 
-/* Sums of steps miss the end by their rounding, and what is short of it by so little is it. Of dynamics, which may go on
- * to a later end, times stay the sums that they would be then. */
+/* Sums of steps miss the end by their rounding, and what is short of it by so little is it. Of dynamics, which may go
+ * on to a later end, times stay the sums that they would be then. */
 static PetscReal time_after(const Model *m, PetscReal dt)
 {
   const PetscReal t = m->time + dt, end = m->c->analysis.end;
