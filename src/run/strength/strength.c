@@ -7,7 +7,8 @@
 #define ALL_DISSIPATED 0.99
 #define SLIDES_LONG 0.05 /* by so much a factor grows while what moves slides by its own height, */
 #define SLIDES_FAR 0.01  /* or so many of its heights it goes, in tries, */
-#define SLIDES_TRIES 3   /* at least so many, before it is called so */
+#define SLIDES_TRIES 3   /* at least so many, before it is called so; */
+#define LOW (1.0 / 3)    /* if it is no higher than that of all that is there */
 #define EASY 8           /* Newton's iterations after which the next step is larger */
 
 static const char unfinished[] = "the search was ended before it was over";
@@ -136,6 +137,7 @@ static PetscInt stood_before(const StrengthRun *s, PetscInt i)
 static PetscBool goes_on(const StrengthRun *s, PetscInt i)
 {
   const Try *before = s->tries + stood_before(s, i), *now = s->tries + i;
+  if (now->height > LOW * s->height) return PETSC_FALSE;
   return (PetscBool)(now->moved > SLIDES * now->height * (now->factor - before->factor));
 }
 
