@@ -94,6 +94,10 @@ typedef struct {
   PetscReal lower, upper, value;
   PetscBool trying; /* a step for another factor: it is not made smaller */
   PetscReal reach;  /* no node of a body that stands moves farther in such a step, m */
+  /* of the last try from this state that slid: by how much its factor was larger, and how far it went, m; 0: none */
+  PetscReal slid_by, slid;
+  PetscReal by;   /* and by how much that of this try is, */
+  PetscReal anew; /* and what of its way does not grow with the factor, m */
 } Strength;
 
 /* A load that is raised to its limit (limit_load.c). */

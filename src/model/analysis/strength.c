@@ -206,18 +206,31 @@ PetscErrorCode MovingHeight(const Model *m, PetscReal *height)
   PetscFunctionReturn(0);
 }
 
+/* What has moved may find another balance whatever the factor is (points of soft soil do, on a grid that is restored;
+ * what locks, too). Of two tries from the same state that part of the way is known which does not grow with the
+ * factor: it is no slide. */
+static PetscReal rests_anew(const Strength *s, PetscReal by, PetscReal moved)
+{
+  if (!(s->slid_by > by)) return 0;
+  return PetscMax(0, (moved * s->slid_by - s->slid * by) / (s->slid_by - by));
+}
+
 PetscErrorCode StrengthJudge(Model *m, StepReport *report)
 {
+  Strength *s = &m->strength;
   PetscReal moved;
 
   PetscFunctionBeginUser;
-  if (!m->strength.trying) PetscFunctionReturn(0);
+  if (!s->trying) PetscFunctionReturn(0);
   PetscCall(LargestIncrement(m, &moved));
-  if (moved <= m->strength.reach) PetscFunctionReturn(0);
+  s->anew = rests_anew(s, s->by, moved);
+  if (moved - s->anew <= s->reach) PetscFunctionReturn(0);
   snprintf(report->leap, sizeof report->leap, "it slides: %.3g m, for %.3g m that what stands moves at most",
-           (double)moved, (double)m->strength.reach);
+           (double)moved, (double)s->reach);
   report->newton.converged = PETSC_FALSE;
   report->newton.reason = report->leap;
+  s->slid_by = s->by;
+  s->slid = moved;
   PetscFunctionReturn(0);
 }
 
@@ -230,6 +243,7 @@ PetscErrorCode ModelTryFactor(Model *m, PetscReal factor, StepReport *report, Pe
   PetscFunctionBeginUser;
   strength_set(m, factor);
   m->strength.trying = PETSC_TRUE;
+  m->strength.by = factor - stable;
   m->control.next = factor - stable;
   PetscCall(ModelStep(m, factor - stable, report));
   m->strength.trying = PETSC_FALSE;
@@ -237,5 +251,6 @@ PetscErrorCode ModelTryFactor(Model *m, PetscReal factor, StepReport *report, Pe
   m->cuts = cuts;
   PetscCall(LargestIncrement(m, moved));
   if (report->outcome != STEP_ACCEPTED) strength_set(m, stable);
+  else m->strength.slid_by = m->strength.slid = 0;
   PetscFunctionReturn(0);
 }

@@ -2,14 +2,15 @@
 #include "base/text.h"
 #include "output/directory/run_dir_files.h"
 
-/* What slides goes so many of its heights farther for a factor larger by one; what stands does not. */
+/* What slides goes so many of its heights farther for a factor so many times as large (1 + s, for s; strength falls by
+ * that); what stands does not. */
 #define SLIDES 0.1
 #define ALL_DISSIPATED 0.99
-#define SLIDES_LONG 0.05 /* by so much a factor grows while what moves slides by its own height, */
-#define SLIDES_FAR 0.01  /* or so many of its heights it goes, in tries, */
-#define SLIDES_TRIES 3   /* at least so many, before it is called so; */
-#define LOW (1.0 / 3)    /* if it is no higher than that of all that is there */
-#define EASY 8           /* Newton's iterations after which the next step is larger */
+#define CLOSE 0.25      /* of the tolerance: what slides in so short a step slides */
+#define SLIDES_FAR 0.01 /* so many of its own heights what moves goes, */
+#define SLIDES_TRIES 3  /* in so many tries at least, before it is called so; */
+#define LOW (1.0 / 3)   /* if it is no higher than that of all that is there */
+#define EASY 8          /* Newton's iterations after which the next step is larger */
 
 static const char unfinished[] = "the search was ended before it was over";
 static const char *const outcome_words[TRY_N] = {"stands", "slides", "runs", "lost"};
@@ -91,7 +92,7 @@ PetscErrorCode StrengthBegin(StrengthRun *s, Model *m)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Tell(const Try *try, const StepReport *report, RunDir *dir)
+static PetscErrorCode Tell(const Try *try, const char *reason, RunDir *dir)
 {
   PetscFunctionBeginUser;
   if (try->outcome == TRY_STANDS)
@@ -99,7 +100,7 @@ static PetscErrorCode Tell(const Try *try, const StepReport *report, RunDir *dir
                         (double)try->factor, (int)try->iterations, (double)try->displacement, (double)try->dissipated));
   else
     PetscCall(RunDirLog(dir, "factor = %.5g %s iterations = %d (%s)", (double)try->factor,
-                        outcome_words[(TryOutcome)try->outcome], (int)try->iterations, report->newton.reason));
+                        outcome_words[(TryOutcome)try->outcome], (int)try->iterations, reason));
   PetscFunctionReturn(0);
 }
 
@@ -119,7 +120,7 @@ static PetscErrorCode TryLarger(const StrengthRun *s, Model *m, Try *try, StepRe
 
   PetscFunctionBeginUser;
   larger.factor += more;
-  m->strength.reach = try->moved + SLIDES * s->height * more;
+  m->strength.reach = try->moved + SLIDES * s->height * more / larger.factor;
   PetscCall(ModelTryFactor(m, larger.factor, report, &larger.moved));
   if (report->outcome == STEP_ACCEPTED) *try = larger;
   else if (report->outcome == STEP_TOO_SMALL) *report = first;
@@ -138,15 +139,15 @@ static PetscBool goes_on(const StrengthRun *s, PetscInt i)
 {
   const Try *before = s->tries + stood_before(s, i), *now = s->tries + i;
   if (now->height > LOW * s->height) return PETSC_FALSE;
-  return (PetscBool)(now->moved > SLIDES * now->height * (now->factor - before->factor));
+  return (PetscBool)(now->moved - now->anew > SLIDES * now->height * (1 - before->factor / now->factor));
 }
 
 /* Is the slide of so many tries, after the one that stood, a long one? */
 static PetscBool is_long(const StrengthRun *s, PetscInt stood, PetscInt tries)
 {
-  const Try *before = s->tries + stood, *last = s->tries + s->n - 1;
-  const PetscBool far = (PetscBool)(last->displacement - before->displacement > SLIDES_FAR * last->height);
-  return (PetscBool)(tries >= SLIDES_TRIES && (far || last->factor > (1 + SLIDES_LONG) * before->factor));
+  const Try *last = s->tries + s->n - 1;
+  return (PetscBool)(tries >= SLIDES_TRIES &&
+                     last->displacement - s->tries[stood].displacement > SLIDES_FAR * last->height);
 }
 
 /* What is low beside all that is there slides, and rests again, by less than that would: a step of a metre on 16
@@ -176,26 +177,71 @@ static PetscErrorCode SeeLongSlide(StrengthRun *s, RunDir *dir)
   PetscFunctionReturn(0);
 }
 
+/* *counts: has it an outcome, and was not cut off? */
+static PetscErrorCode TryOnce(const StrengthRun *s, Model *m, Try *try, StepReport *report, PetscBool *counts)
+{
+  PetscFunctionBeginUser;
+  m->strength.anew = 0;
+  m->strength.reach =
+    SLIDES * s->height * PetscMin(1 - s->search.stable / try->factor, m->c->analysis.reduction.tolerance);
+  PetscCall(ModelTryFactor(m, try->factor, report, &try->moved));
+  if (report->leap[0] && s->search.stable == 0) PetscCall(TryLarger(s, m, try, report));
+  *counts = (PetscBool)(report->outcome != STEP_INTERRUPTED && report->outcome != STEP_POINTS_LOST);
+  if (!*counts) PetscFunctionReturn(0);
+  try->outcome = (PetscReal)(report->outcome == STEP_ACCEPTED ? TRY_STANDS
+                             : report->leap[0]                ? TRY_SLIDES
+                             : try->moved > m->strength.reach ? TRY_RUNS
+                                                              : TRY_LOST);
+  try->iterations = (PetscReal)report->newton.iterations;
+  try->anew = m->strength.anew;
+  PetscCall(Look(m, try));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Keep(StrengthRun *s, const Try *try, const char *reason, RunDir *dir)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Append(s, try));
+  PetscCall(Tell(try, reason, dir));
+  PetscFunctionReturn(0);
+}
+
+/* What slides is tried again with half the step, from the same state: only what of its way grows with the factor is a
+ * slide (model/analysis/strength.c). *try: that of half the step. */
+static PetscErrorCode TryHalf(StrengthRun *s, Model *m, RunDir *dir, Try *try, StepReport *report, PetscBool *counts)
+{
+  const ReductionSpec *spec = &m->c->analysis.reduction;
+  const PetscReal reach = m->strength.reach;
+  const Try whole = *try;
+  char reason[sizeof report->leap];
+
+  PetscFunctionBeginUser;
+  snprintf(reason, sizeof reason, "%s", report->newton.reason);
+  *try = (Try){.factor = 0.5 * (s->search.stable + whole.factor)};
+  PetscCall(TryOnce(s, m, try, report, counts));
+  if (!*counts) PetscFunctionReturn(0);
+  PetscCall(Keep(s, &whole, reason, dir));
+  if (try->outcome != TRY_STANDS || 2 * (whole.moved - try->moved) > reach)
+    search_tell(&s->search, spec, whole.factor, TRY_SLIDES, PETSC_FALSE);
+  else if (whole.factor >= s->search.failed) s->search.failed = 0; /* tried from farther away it slid */
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode StrengthTry(StrengthRun *s, Model *m, RunDir *dir, StepReport *report)
 {
   const ReductionSpec *spec = &m->c->analysis.reduction;
   Try try = {.factor = search_next(&s->search, spec)};
+  PetscBool counts;
 
   PetscFunctionBeginUser;
-  m->strength.reach = SLIDES * s->height * PetscMin(try.factor - s->search.stable, spec->tolerance * try.factor);
-  PetscCall(ModelTryFactor(m, try.factor, report, &try.moved));
-  if (report->leap[0] && s->search.stable == 0) PetscCall(TryLarger(s, m, &try, report));
-  if (report->outcome == STEP_INTERRUPTED || report->outcome == STEP_POINTS_LOST) PetscFunctionReturn(0);
-  const TryOutcome outcome = report->outcome == STEP_ACCEPTED ? TRY_STANDS
-                             : report->leap[0]                ? TRY_SLIDES
-                             : try.moved > m->strength.reach  ? TRY_RUNS
-                                                              : TRY_LOST;
-  try.outcome = (PetscReal)outcome;
-  try.iterations = (PetscReal)report->newton.iterations;
-  PetscCall(Look(m, &try));
-  PetscCall(Append(s, &try));
-  search_tell(&s->search, spec, try.factor, outcome, report->newton.iterations <= EASY);
-  PetscCall(Tell(&try, report, dir));
+  m->strength.slid_by = 0;
+  PetscCall(TryOnce(s, m, &try, report, &counts));
+  if (counts && try.outcome == TRY_SLIDES && s->search.stable > 0 &&
+      try.factor > (1 + CLOSE * spec->tolerance) * s->search.stable)
+    PetscCall(TryHalf(s, m, dir, &try, report, &counts));
+  if (!counts) PetscFunctionReturn(0);
+  PetscCall(Keep(s, &try, report->newton.reason, dir));
+  search_tell(&s->search, spec, try.factor, (TryOutcome)try.outcome, report->newton.iterations <= EASY);
   PetscCall(SeeLongSlide(s, dir));
   know_bracket(s, m);
   PetscFunctionReturn(0);
@@ -289,7 +335,7 @@ static PetscBool is_doubtful(const StrengthRun *s)
   }
   if (!lost || last == 0) return PETSC_FALSE;
   const PetscInt before = stood_before(s, last);
-  const PetscReal taken = s->tries[last].factor - s->tries[before].factor;
+  const PetscReal taken = 1 - s->tries[before].factor / s->tries[last].factor;
   return (PetscBool)(!flows || s->tries[last].moved < 0.1 * SLIDES * s->height * taken);
 }
 

@@ -15,8 +15,9 @@ typedef struct {
   PetscReal dissipated;   /* by plastic flow and friction since the start, there, J */
   PetscReal work;         /* of loads and gravity since the start, there, J */
   PetscReal height;       /* of what moves, against gravity, m */
+  PetscReal anew;         /* what of `moved` does not grow with the factor, as far as that is known, m */
 } Try;
-#define TRY_NUMBERS 8
+#define TRY_NUMBERS 9
 
 typedef struct {
   Search search;
