@@ -2,17 +2,12 @@
 #include "base/text.h"
 #include "output/directory/run_dir_files.h"
 
-/* What slides goes so many of its heights farther for a factor so many times as large (1 + s, for s; strength falls by
- * that); what stands does not. */
-#define SLIDES 0.1
-#define ALL_DISSIPATED 0.99
 #define CLOSE 0.25      /* of the tolerance: what slides in so short a step slides */
 #define SLIDES_FAR 0.01 /* so many of its own heights what moves goes, */
 #define SLIDES_TRIES 3  /* in so many tries at least, before it is called so; */
 #define LOW (1.0 / 3)   /* if it is no higher than that of all that is there */
 #define EASY 8          /* Newton's iterations after which the next step is larger */
 
-static const char unfinished[] = "the search was ended before it was over";
 static const char *const outcome_words[TRY_N] = {"stands", "slides", "runs", "lost"};
 
 PetscErrorCode StrengthRunDestroy(StrengthRun *s)
@@ -104,12 +99,6 @@ static PetscErrorCode Tell(const Try *try, const char *reason, RunDir *dir)
   PetscFunctionReturn(0);
 }
 
-static void know_bracket(const StrengthRun *s, Model *m)
-{
-  m->strength.lower = s->search.stable > 0 ? s->search.stable : NAN;
-  m->strength.upper = s->search.failed > 0 ? s->search.failed : NAN;
-}
-
 /* What yields first moves at once as far as it has to, in a body that stands, too. So the first factor is tried from
  * where nothing yields, and if the body goes far then a larger one as well: does it go farther by what slides? */
 static PetscErrorCode TryLarger(const StrengthRun *s, Model *m, Try *try, StepReport *report)
@@ -120,26 +109,19 @@ static PetscErrorCode TryLarger(const StrengthRun *s, Model *m, Try *try, StepRe
 
   PetscFunctionBeginUser;
   larger.factor += more;
-  m->strength.reach = try->moved + SLIDES * s->height * more / larger.factor;
+  m->strength.reach = try->moved + STRENGTH_SLIDES * s->height * more / larger.factor;
   PetscCall(ModelTryFactor(m, larger.factor, report, &larger.moved));
   if (report->outcome == STEP_ACCEPTED) *try = larger;
   else if (report->outcome == STEP_TOO_SMALL) *report = first;
   PetscFunctionReturn(0);
 }
 
-/* The last that stood before try i > 0. */
-static PetscInt stood_before(const StrengthRun *s, PetscInt i)
-{
-  for (--i; i > 0 && s->tries[i].outcome != TRY_STANDS;) --i;
-  return i;
-}
-
 /* Did what moved in try i, which stands, go as far as what slides, by its own height? */
 static PetscBool goes_on(const StrengthRun *s, PetscInt i)
 {
-  const Try *before = s->tries + stood_before(s, i), *now = s->tries + i;
+  const Try *before = s->tries + strength_stood_before(s, i), *now = s->tries + i;
   if (now->height > LOW * s->height) return PETSC_FALSE;
-  return (PetscBool)(now->moved - now->anew > SLIDES * now->height * (1 - before->factor / now->factor));
+  return (PetscBool)(now->moved - now->anew > STRENGTH_SLIDES * now->height * (1 - before->factor / now->factor));
 }
 
 /* Is the slide of so many tries, after the one that stood, a long one? */
@@ -160,9 +142,10 @@ static PetscErrorCode SeeLongSlide(StrengthRun *s, RunDir *dir)
 
   PetscFunctionBeginUser;
   if (last->outcome != TRY_STANDS) PetscFunctionReturn(0);
-  for (PetscInt i = first; i > 1 && s->tries[stood_before(s, i)].factor > 0 && goes_on(s, i); i = stood_before(s, i))
+  for (PetscInt i = first; i > 1 && s->tries[strength_stood_before(s, i)].factor > 0 && goes_on(s, i);
+       i = strength_stood_before(s, i))
     first = i, ++tries;
-  const PetscInt stood = stood_before(s, first);
+  const PetscInt stood = strength_stood_before(s, first);
   if (!is_long(s, stood, tries)) PetscFunctionReturn(0);
   PetscCall(RunDirLog(dir,
                       "factor = %.5g and beyond slides: %.3g m up to %.5g, and what moves is %.3g m high; the state is "
@@ -183,7 +166,7 @@ static PetscErrorCode TryOnce(const StrengthRun *s, Model *m, Try *try, StepRepo
   PetscFunctionBeginUser;
   m->strength.anew = 0;
   m->strength.reach =
-    SLIDES * s->height * PetscMin(1 - s->search.stable / try->factor, m->c->analysis.reduction.tolerance);
+    STRENGTH_SLIDES * s->height * PetscMin(1 - s->search.stable / try->factor, m->c->analysis.reduction.tolerance);
   PetscCall(ModelTryFactor(m, try->factor, report, &try->moved));
   if (report->leap[0] && s->search.stable == 0) PetscCall(TryLarger(s, m, try, report));
   *counts = (PetscBool)(report->outcome != STEP_INTERRUPTED && report->outcome != STEP_POINTS_LOST);
@@ -243,7 +226,7 @@ PetscErrorCode StrengthTry(StrengthRun *s, Model *m, RunDir *dir, StepReport *re
   PetscCall(Keep(s, &try, report->newton.reason, dir));
   search_tell(&s->search, spec, try.factor, (TryOutcome)try.outcome, report->newton.iterations <= EASY);
   PetscCall(SeeLongSlide(s, dir));
-  know_bracket(s, m);
+  strength_know_bracket(s, m);
   PetscFunctionReturn(0);
 }
 
@@ -272,113 +255,6 @@ PetscErrorCode StrengthWrite(const StrengthRun *s, RunDir *dir)
   const PetscErrorCode status = RunDirWriteText(dir, "factor.csv", text);
   PetscCall(PetscFree(text));
   PetscFunctionReturn(status);
-}
-
-/* Does the try tell how far equilibria go, or where there is none? */
-typedef PetscBool (*Says)(const StrengthRun *s, PetscInt i);
-
-static PetscBool balances(const StrengthRun *s, PetscInt i)
-{
-  return s->tries[i].outcome == TRY_STANDS || s->tries[i].outcome == TRY_SLIDES;
-}
-
-static PetscBool slides(const StrengthRun *s, PetscInt i)
-{
-  return s->tries[i].outcome == TRY_SLIDES || s->tries[i].outcome == TRY_RUNS;
-}
-
-static PetscBool stands(const StrengthRun *s, PetscInt i) { return s->tries[i].outcome == TRY_STANDS; }
-static PetscBool fails(const StrengthRun *s, PetscInt i) { return !balances(s, i); }
-
-/* The part of the work of loads and gravity since the last stable state that was dissipated; all of it
- * where nothing more is stored. */
-static PetscReal share_dissipated(const StrengthRun *s, PetscInt i)
-{
-  const Try *a = &s->tries[stood_before(s, i)], *b = &s->tries[i];
-  return b->work > a->work ? (b->dissipated - a->dissipated) / (b->work - a->work) : 0;
-}
-
-static PetscBool stores(const StrengthRun *s, PetscInt i)
-{
-  return stands(s, i) && (i == 0 || share_dissipated(s, i) < ALL_DISSIPATED);
-}
-
-static PetscBool stores_nothing(const StrengthRun *s, PetscInt i) { return stands(s, i) && i > 0 && !stores(s, i); }
-
-/* "by Newton = 1.38 ... 1.39": the largest factor of which one says yes, and the smallest beyond
- * it of which the other says no. */
-static PetscErrorCode TellBracket(const StrengthRun *s, const char *by, Says yes, Says no, const char *what,
-                                  RunDir *dir)
-{
-  PetscReal lower = 0, upper = PETSC_MAX_REAL;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < s->n; ++i)
-    if (yes(s, i)) lower = PetscMax(lower, s->tries[i].factor);
-  for (PetscInt i = 0; i < s->n; ++i)
-    if (no(s, i) && s->tries[i].factor > lower) upper = PetscMin(upper, s->tries[i].factor);
-  if (upper < PETSC_MAX_REAL)
-    PetscCall(RunDirLog(dir, "by %s = %.5g ... %.5g: %s", by, (double)lower, (double)upper, what));
-  else PetscCall(RunDirLog(dir, "by %s > %.5g", by, (double)lower));
-  PetscFunctionReturn(0);
-}
-
-/* Newton's method gave up where nothing ran away, and what stood before neither moved as if it were to slide nor
- * dissipated all work. What is lost by itself may run away, or move, in the smallest of steps. */
-static PetscBool is_doubtful(const StrengthRun *s)
-{
-  const PetscInt last = stood_before(s, s->n - 1);
-  PetscBool lost = PETSC_FALSE, flows = PETSC_FALSE;
-  for (PetscInt i = 1; i < s->n; ++i) {
-    if (s->tries[i].outcome == TRY_LOST && s->tries[i].factor >= s->search.failed) lost = PETSC_TRUE;
-    if (stands(s, i)) flows = stores_nothing(s, i);
-  }
-  if (!lost || last == 0) return PETSC_FALSE;
-  const PetscInt before = stood_before(s, last);
-  const PetscReal taken = 1 - s->tries[before].factor / s->tries[last].factor;
-  return (PetscBool)(!flows || s->tries[last].moved < 0.1 * SLIDES * s->height * taken);
-}
-
-static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *dir)
-{
-  const ReductionSpec *spec = &m->c->analysis.reduction;
-  const PetscReal stable = s->search.stable, failed = s->search.failed;
-  const int digits = (int)PetscMax(2, PetscCeilReal(-PetscLog10Real(failed - stable)));
-
-  PetscFunctionBeginUser;
-  PetscCall(TellBracket(s, "Newton", balances, fails, "beyond it no equilibrium is found", dir));
-  PetscCall(TellBracket(s, "displacement", stands, slides, "beyond it the body slides", dir));
-  PetscCall(TellBracket(s, "energy", stores, stores_nothing, "beyond it 99 % of the work is dissipated", dir));
-  if (failed <= spec->from)
-    PetscCall(
-      RunDirLog(dir, "warning = it does not stand with a factor of %.4g: sought downwards", (double)spec->from));
-  if (is_doubtful(s))
-    PetscCall(RunDirLog(dir,
-                        "warning = Newton's method lost its way before anything slid: the factor may be larger "
-                        "(another mesh, formulation or dilatancy angle tells)"));
-  PetscCall(RunDirLog(dir, "factor of safety = %.*f (%.*f ... %.*f)", digits, (double)m->strength.value, digits,
-                      (double)stable, digits, (double)failed));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode StrengthEnd(const StrengthRun *s, Model *m, RunDir *dir)
-{
-  const PetscReal stable = s->search.stable, failed = s->search.failed;
-  const PetscBool over = search_next(&s->search, &m->c->analysis.reduction) == 0;
-
-  PetscFunctionBeginUser;
-  know_bracket(s, m);
-  if (failed == 0)
-    PetscCall(RunDirLog(dir, "factor of safety > %.4g: %s", (double)stable,
-                        over ? "it stands with the largest factor that was asked for" : unfinished));
-  else if (stable == 0)
-    PetscCall(RunDirLog(dir, "factor of safety < %.4g: %s", (double)failed,
-                        over ? "it does not stand, however strong" : unfinished));
-  else {
-    m->strength.value = 0.5 * (stable + failed);
-    PetscCall(TellAnswer(s, m, dir));
-  }
-  PetscFunctionReturn(0);
 }
 
 PetscErrorCode StrengthToTables(const StrengthRun *s, Tables *tables)

@@ -5,6 +5,10 @@
 #include "output/directory/run_dir.h"
 #include "run/strength/search.h"
 
+/* What slides goes so many of its heights farther for a factor so many times as large (1 + s, for s; strength falls by
+ * that); what stands does not. */
+#define STRENGTH_SLIDES 0.1
+
 /* One factor that was tried; row 0 is the state before the first: all loads on, nothing yields. */
 typedef struct {
   PetscReal factor;
@@ -38,5 +42,9 @@ PetscErrorCode StrengthTry(StrengthRun *run, Model *model, RunDir *dir, StepRepo
 PetscErrorCode StrengthWrite(const StrengthRun *run, RunDir *dir);
 /* Collective. The answer: into the model for its measures, and into the log. */
 PetscErrorCode StrengthEnd(const StrengthRun *run, Model *model, RunDir *dir);
+/* answer.c. The last that stood before try i > 0. */
+PetscInt strength_stood_before(const StrengthRun *run, PetscInt i);
+/* What is known of the factor so far, for measures. */
+void strength_know_bracket(const StrengthRun *run, Model *model);
 PetscErrorCode StrengthToTables(const StrengthRun *run, Tables *tables);
 PetscErrorCode StrengthFromTables(StrengthRun *run, const Tables *tables, char reason[256]);

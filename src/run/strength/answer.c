@@ -1,0 +1,127 @@
+/* What the tries of a search say in the end: the brackets by three signs of failure, the answer, and where it is to be
+ * doubted. */
+#include "output/directory/run_dir_files.h"
+#include "run/strength/strength.h"
+
+#define ALL_DISSIPATED 0.99
+
+static const char unfinished[] = "the search was ended before it was over";
+
+PetscInt strength_stood_before(const StrengthRun *s, PetscInt i)
+{
+  for (--i; i > 0 && s->tries[i].outcome != TRY_STANDS;) --i;
+  return i;
+}
+
+void strength_know_bracket(const StrengthRun *s, Model *m)
+{
+  m->strength.lower = s->search.stable > 0 ? s->search.stable : NAN;
+  m->strength.upper = s->search.failed > 0 ? s->search.failed : NAN;
+}
+
+/* Does the try tell how far equilibria go, or where there is none? */
+typedef PetscBool (*Says)(const StrengthRun *s, PetscInt i);
+
+static PetscBool balances(const StrengthRun *s, PetscInt i)
+{
+  return s->tries[i].outcome == TRY_STANDS || s->tries[i].outcome == TRY_SLIDES;
+}
+
+static PetscBool slides(const StrengthRun *s, PetscInt i)
+{
+  return s->tries[i].outcome == TRY_SLIDES || s->tries[i].outcome == TRY_RUNS;
+}
+
+static PetscBool stands(const StrengthRun *s, PetscInt i) { return s->tries[i].outcome == TRY_STANDS; }
+static PetscBool fails(const StrengthRun *s, PetscInt i) { return !balances(s, i); }
+
+/* The part of the work of loads and gravity since the last stable state that was dissipated; all of it
+ * where nothing more is stored. */
+static PetscReal share_dissipated(const StrengthRun *s, PetscInt i)
+{
+  const Try *a = &s->tries[strength_stood_before(s, i)], *b = &s->tries[i];
+  return b->work > a->work ? (b->dissipated - a->dissipated) / (b->work - a->work) : 0;
+}
+
+static PetscBool stores(const StrengthRun *s, PetscInt i)
+{
+  return stands(s, i) && (i == 0 || share_dissipated(s, i) < ALL_DISSIPATED);
+}
+
+static PetscBool stores_nothing(const StrengthRun *s, PetscInt i) { return stands(s, i) && i > 0 && !stores(s, i); }
+
+/* "by Newton = 1.38 ... 1.39": the largest factor of which one says yes, and the smallest beyond
+ * it of which the other says no. */
+static PetscErrorCode TellBracket(const StrengthRun *s, const char *by, Says yes, Says no, const char *what,
+                                  RunDir *dir)
+{
+  PetscReal lower = 0, upper = PETSC_MAX_REAL;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < s->n; ++i)
+    if (yes(s, i)) lower = PetscMax(lower, s->tries[i].factor);
+  for (PetscInt i = 0; i < s->n; ++i)
+    if (no(s, i) && s->tries[i].factor > lower) upper = PetscMin(upper, s->tries[i].factor);
+  if (upper < PETSC_MAX_REAL)
+    PetscCall(RunDirLog(dir, "by %s = %.5g ... %.5g: %s", by, (double)lower, (double)upper, what));
+  else PetscCall(RunDirLog(dir, "by %s > %.5g", by, (double)lower));
+  PetscFunctionReturn(0);
+}
+
+/* Newton's method gave up where nothing ran away, and what stood before neither moved as if it were to slide nor
+ * dissipated all work. What is lost by itself may run away, or move, in the smallest of steps. */
+static PetscBool is_doubtful(const StrengthRun *s)
+{
+  const PetscInt last = strength_stood_before(s, s->n - 1);
+  PetscBool lost = PETSC_FALSE, flows = PETSC_FALSE;
+  for (PetscInt i = 1; i < s->n; ++i) {
+    if (s->tries[i].outcome == TRY_LOST && s->tries[i].factor >= s->search.failed) lost = PETSC_TRUE;
+    if (stands(s, i)) flows = stores_nothing(s, i);
+  }
+  if (!lost || last == 0) return PETSC_FALSE;
+  const PetscInt before = strength_stood_before(s, last);
+  const PetscReal taken = 1 - s->tries[before].factor / s->tries[last].factor;
+  return (PetscBool)(!flows || s->tries[last].moved < 0.1 * STRENGTH_SLIDES * s->height * taken);
+}
+
+static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *dir)
+{
+  const ReductionSpec *spec = &m->c->analysis.reduction;
+  const PetscReal stable = s->search.stable, failed = s->search.failed;
+  const int digits = (int)PetscMax(2, PetscCeilReal(-PetscLog10Real(failed - stable)));
+
+  PetscFunctionBeginUser;
+  PetscCall(TellBracket(s, "Newton", balances, fails, "beyond it no equilibrium is found", dir));
+  PetscCall(TellBracket(s, "displacement", stands, slides, "beyond it the body slides", dir));
+  PetscCall(TellBracket(s, "energy", stores, stores_nothing, "beyond it 99 % of the work is dissipated", dir));
+  if (failed <= spec->from)
+    PetscCall(
+      RunDirLog(dir, "warning = it does not stand with a factor of %.4g: sought downwards", (double)spec->from));
+  if (is_doubtful(s))
+    PetscCall(RunDirLog(dir,
+                        "warning = Newton's method lost its way before anything slid: the factor may be larger "
+                        "(another mesh, formulation or dilatancy angle tells)"));
+  PetscCall(RunDirLog(dir, "factor of safety = %.*f (%.*f ... %.*f)", digits, (double)m->strength.value, digits,
+                      (double)stable, digits, (double)failed));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode StrengthEnd(const StrengthRun *s, Model *m, RunDir *dir)
+{
+  const PetscReal stable = s->search.stable, failed = s->search.failed;
+  const PetscBool over = search_next(&s->search, &m->c->analysis.reduction) == 0;
+
+  PetscFunctionBeginUser;
+  strength_know_bracket(s, m);
+  if (failed == 0)
+    PetscCall(RunDirLog(dir, "factor of safety > %.4g: %s", (double)stable,
+                        over ? "it stands with the largest factor that was asked for" : unfinished));
+  else if (stable == 0)
+    PetscCall(RunDirLog(dir, "factor of safety < %.4g: %s", (double)failed,
+                        over ? "it does not stand, however strong" : unfinished));
+  else {
+    m->strength.value = 0.5 * (stable + failed);
+    PetscCall(TellAnswer(s, m, dir));
+  }
+  PetscFunctionReturn(0);
+}
