@@ -80,7 +80,7 @@ static PetscBool is_doubtful(const StrengthRun *s)
   }
   if (!lost || last == 0) return PETSC_FALSE;
   const PetscInt before = strength_stood_before(s, last);
-  const PetscReal taken = 1 - s->tries[before].factor / s->tries[last].factor;
+  const PetscReal taken = strength_share(s->tries[last].factor - s->tries[before].factor, s->tries[last].factor);
   return (PetscBool)(!flows || s->tries[last].moved < 0.1 * STRENGTH_SLIDES * s->height * taken);
 }
 

@@ -109,7 +109,7 @@ static PetscErrorCode TryLarger(const StrengthRun *s, Model *m, Try *try, StepRe
 
   PetscFunctionBeginUser;
   larger.factor += more;
-  m->strength.reach = try->moved + STRENGTH_SLIDES * s->height * more / larger.factor;
+  m->strength.reach = try->moved + STRENGTH_SLIDES * s->height * strength_share(more, larger.factor);
   PetscCall(ModelTryFactor(m, larger.factor, report, &larger.moved));
   if (report->outcome == STEP_ACCEPTED) *try = larger;
   else if (report->outcome == STEP_TOO_SMALL) *report = first;
@@ -121,7 +121,8 @@ static PetscBool goes_on(const StrengthRun *s, PetscInt i)
 {
   const Try *before = s->tries + strength_stood_before(s, i), *now = s->tries + i;
   if (now->height > LOW * s->height) return PETSC_FALSE;
-  return (PetscBool)(now->moved - now->anew > STRENGTH_SLIDES * now->height * (1 - before->factor / now->factor));
+  return (PetscBool)(now->moved - now->anew >
+                     STRENGTH_SLIDES * now->height * strength_share(now->factor - before->factor, now->factor));
 }
 
 /* Is the slide of so many tries, after the one that stood, a long one? */
@@ -166,7 +167,9 @@ static PetscErrorCode TryOnce(const StrengthRun *s, Model *m, Try *try, StepRepo
   PetscFunctionBeginUser;
   m->strength.anew = 0;
   m->strength.reach =
-    STRENGTH_SLIDES * s->height * PetscMin(1 - s->search.stable / try->factor, m->c->analysis.reduction.tolerance);
+    STRENGTH_SLIDES * s->height *
+    strength_share(PetscMin(try->factor - s->search.stable, m->c->analysis.reduction.tolerance * try->factor),
+                   try->factor);
   PetscCall(ModelTryFactor(m, try->factor, report, &try->moved));
   if (report->leap[0] && s->search.stable == 0) PetscCall(TryLarger(s, m, try, report));
   *counts = (PetscBool)(report->outcome != STEP_INTERRUPTED && report->outcome != STEP_POINTS_LOST);

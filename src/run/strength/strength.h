@@ -9,6 +9,9 @@
  * that); what stands does not. */
 #define STRENGTH_SLIDES 0.1
 
+/* The share of strength that goes as the factor grows by `more` to this; below 1 no more than that. */
+static inline PetscReal strength_share(PetscReal more, PetscReal factor) { return more / PetscMax(1, factor); }
+
 /* One factor that was tried; row 0 is the state before the first: all loads on, nothing yields. */
 typedef struct {
   PetscReal factor;
