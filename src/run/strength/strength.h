@@ -5,8 +5,7 @@
 #include "output/directory/run_dir.h"
 #include "run/strength/search.h"
 
-/* What slides goes so many of its heights farther for a factor so many times as large (1 + s, for s; strength falls by
- * that); what stands does not. */
+/* What slides goes so many of its heights times the share of strength that it loses; what stands does not. */
 #define STRENGTH_SLIDES 0.1
 
 /* The share of strength that goes as the factor grows by `more` to this; below 1 no more than that. */
