@@ -4,6 +4,7 @@
 
 #define LONGEST 64    /* words beyond this are never near each other */
 #define LEAST_ALIKE 4 /* letters at the beginning of words that are kin */
+#define TOO_SHORT 2   /* a word of so many letters with another one in it is any other word */
 
 static int plain(char c) { return c == '_' ? '-' : tolower((unsigned char)c); }
 
@@ -63,6 +64,7 @@ const char *diag_nearest(const char *word, const char *const *words)
   for (const char *const *w = words; *w; ++w) {
     if (strlen(*w) > LONGEST) continue;
     const int distance = nearest_distance(word, *w);
+    if (distance > 0 && length <= TOO_SHORT && strlen(*w) == length) continue;
     if (distance < least) {
       least = distance;
       best = *w;

@@ -52,6 +52,9 @@ changed "a list left out" 's/^loads/walls: [{name: w, half-space: {point: [0, 0]
 changed "one mapping too deep" 's/type: static/gravity: [0, 1], type: static/' 'hint: it belongs elsewhere in the file: `loads: {gravity: ..}`'
 changed "a part of a name" 's/^loads/measures: {f: {force: x}}\nloads/' 'hint: write `wall_force: ..` or `interface_force: ..`'
 changed "nowhere" 's/^loads/bananas: 3\nloads/' "hint: known here: title, kinematics"
+changed "a name for what it is of" 's/^loads/measures: {f: {reaction: y, of: floor}}\nloads/' "hint: known here: tracer, body, boundary"
+changed "a side for an entry" 's/^loads/measures: {f: {reaction: y, of: {boundary: bottom}}}\nloads/; s/- {on/- {name: clamp, on/' "there is no 'bottom' in boundary" "hint: known here: clamp"
+changed "two letters that are others" 's/^loads/measures: {f: {reaction: y, on: 0}}\nloads/' 'hint: it belongs elsewhere in the file: `boundary: [{on: ..}]`'
 changed "duplicate key" 's/^loads/method: fem\nloads/' "case.yaml:12:1: error: key 'method' stands twice in the file (first in line 3)"
 changed "missing key" '/^method/d' "case.yaml:1:1: error: key 'method' of the file is missing"
 changed "wrong type" 's/90e6/stiff/' "case.yaml:9:52: error: materials.rubber.young must be a number > 0" "not 'stiff'"

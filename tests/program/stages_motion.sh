@@ -415,4 +415,26 @@ for method in fem gmm; do
   says err.txt "the measures of the case are not those of the run"
 done
 
+# What the floor bears in a state that another run hands over is known before the first step, by all methods.
+cat >rests.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 2}
+grid: {box: {min: [0, 0], max: [2, 2]}, size: 0.25}
+bodies: [{name: block, shape: {box: {min: [0.5, 0], max: [1.5, 1]}}, points_per_cell: 4, material: rubber}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e5, poisson: 0.3}}
+boundary: [{name: floor, on: {boundary: bottom}, fix: [x, y]}]
+loads: {gravity: [0, -10]}
+measures: {weight: {reaction: y, of: {boundary: floor}}}
+END
+sed '$a initial: {run: rests}' rests.yaml >goes.yaml
+for method in mpm fem gmm; do
+  expect "what rests, $method" 0 "$talus" run rests.yaml --force --quiet --out rests --set method=$method
+  for next in "{type: static, steps: 2}" "{type: dynamic, step: 0.01, end: 0.02}"; do
+    turn
+    expect "a run out of it, $method, $next on $ranks" 0 on_ranks $ranks "$talus" run goes.yaml --force --quiet --out goes --set method=$method --set "analysis=$next"
+    awk -F, 'NR > 1 && ($3 > 10050 || $3 < 9950) { exit 1 }' goes/history.csv || fail "$name: $(cat goes/history.csv)"
+  done
+done
+
 finish

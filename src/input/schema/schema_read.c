@@ -41,6 +41,8 @@ static void hint_empty(SchemaReader *r, const SchemaEntry *entry, const YamlNode
     diag_hint(r->diag, "leave '%s' out if nothing is meant", entry->key);
 }
 
+#define MOST_WORDS 64
+
 void schema_hint_words(SchemaReader *r, const char *word, PetscInt n, const char *const *words)
 {
   if (diag_full(r->diag, DIAG_ERROR)) return; /* its error is not shown */
@@ -57,16 +59,25 @@ void schema_hint_words(SchemaReader *r, const char *word, PetscInt n, const char
   if (n) diag_hint(r->diag, "known here: %s%s", list, strlen(list) + 1 == sizeof(list) ? "..." : "");
 }
 
+/* The table's keys that there are in this kinematics. */
+static PetscInt words_of(SchemaReader *r, const SchemaTable *table, const char *words[MOST_WORDS + 1])
+{
+  SchemaEntry entry;
+  PetscInt n = 0;
+  for (PetscInt i = 0; (entry = schema_entry(table, i)).key && n < MOST_WORDS; ++i)
+    if (schema_fits(r, &entry)) words[n++] = entry.key;
+  words[n] = NULL;
+  return n;
+}
+
 static PetscErrorCode UnknownKeys(SchemaReader *r, const SchemaTable *table, const YamlNode *mapping)
 {
-  const char *words[64] = {NULL};
+  const char *words[MOST_WORDS + 1];
   SchemaEntry entry;
   char path[512];
-  PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt i = 0; (entry = schema_entry(table, i)).key && n < 63; ++i)
-    if (schema_fits(r, &entry)) words[n++] = entry.key;
+  const PetscInt n = words_of(r, table, words);
   for (PetscInt i = 0; i < mapping->n; ++i) {
     const YamlNode *child = mapping->child[i];
     entry = find_entry(table, child->key);
@@ -207,9 +218,12 @@ PetscBool schema_is(SchemaReader *r, const SchemaEntry *entry, const YamlNode *n
 
 static PetscErrorCode ReadNested(SchemaReader *r, const SchemaEntry *entry, const YamlNode *node, void *target)
 {
+  const char *words[MOST_WORDS + 1] = {NULL};
+
   PetscFunctionBeginUser;
   if (schema_is(r, entry, node, YAML_MAPPING, 0))
     PetscCall(SchemaReadTable(r, entry->table, node, (char *)target + entry->offset));
+  else if (node->kind == YAML_SCALAR) schema_hint_words(r, NULL, words_of(r, entry->table, words), words);
   PetscFunctionReturn(0);
 }
 

@@ -362,7 +362,9 @@ PetscErrorCode SchemaReadBoundary(SchemaReader *r, const SchemaEntry *e, const Y
       const YamlNode *name = yaml_find(list->child[i], "name");
       if (name && name->text && !strcmp(name->text, node->text)) *value = i;
     }
-    if (!found) diag_hint(r->diag, "name an entry of boundary (name: ...) or give its index, counted from 0");
+    PetscBool named = PETSC_FALSE;
+    for (PetscInt i = 0; list && i < list->n; ++i) named |= yaml_find(list->child[i], "name") != NULL;
+    if (!found && !named) diag_hint(r->diag, "name an entry of boundary (name: ...) or give its index, counted from 0");
   }
   PetscFunctionReturn(0);
 }

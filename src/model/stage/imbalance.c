@@ -53,8 +53,17 @@ static PetscErrorCode Report(const Model *m, const PetscReal *residual, Imbalanc
   PetscFunctionReturn(0);
 }
 
+/* Those of dofs that are held, at nodes that material reaches. */
+static void keep_held(const Model *m, PetscReal *values)
+{
+  frames_turn(&m->boundary->frames, m->dim, values);
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
+    if (!m->boundary->fixed[i] || !m->nodes->fixed[i] || m->nodes->idle[i / m->dim]) values[i] = 0;
+  frames_turn(&m->boundary->frames, m->dim, values);
+}
+
 /* Forces fade at held nodes, too: at the start the boundary bears what it bore, and h is what the state lacks to it.
- * Where no node knows of a reaction (points of another grid) there is nothing to go on from. */
+ * Where no node knows of a reaction (another run's points, which bring none) it is what the state asks for. */
 static PetscErrorCode HoldReactions(const Model *m, const Case *from, const PetscReal *residual, PetscReal *held)
 {
   const PetscReal *bore = from->analysis.type == ANALYSIS_EXPLICIT ? m->nodes->reaction : m->nodes->held;
@@ -65,14 +74,11 @@ static PetscErrorCode HoldReactions(const Model *m, const Case *from, const Pets
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < owned; ++i) any |= bore[i] != 0;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_BOOL, MPI_LOR, m->comm));
-  if (!any) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &lacks));
   for (PetscInt i = 0; i < owned; ++i) lacks[i] = residual[i] - bore[i];
-  frames_turn(&m->boundary->frames, m->dim, lacks);
-  for (PetscInt i = 0; i < owned; ++i)
-    if (!m->boundary->fixed[i] || !m->nodes->fixed[i] || m->nodes->idle[i / m->dim]) lacks[i] = 0;
-  frames_turn(&m->boundary->frames, m->dim, lacks);
-  for (PetscInt i = 0; i < owned; ++i) held[i] += lacks[i];
+  keep_held(m, lacks);
+  for (PetscInt i = 0; i < owned && !any; ++i) m->nodes->held[i] = m->nodes->rate[i] = m->nodes->reaction[i] = lacks[i];
+  for (PetscInt i = 0; i < owned && any && held; ++i) held[i] += lacks[i];
   PetscCall(PetscFree(lacks));
   PetscFunctionReturn(0);
 }
@@ -100,7 +106,7 @@ PetscErrorCode HoldImbalance(Model *m, const Case *from, Imbalance *imbalance)
   keep_free(m, residual);
   PetscCall(Report(m, residual, imbalance));
   if (held) PetscCall(PetscArraycpy(held, residual, dofs));
-  if (held) PetscCall(HoldReactions(m, from, lacks, held));
+  PetscCall(HoldReactions(m, from, lacks, held));
   PetscCall(PetscFree(lacks));
   PetscCall(PetscFree(residual));
   PetscFunctionReturn(0);

@@ -117,6 +117,18 @@ static PetscBool meets_who_comes(const Case *c, const Case *from, const Interfac
   return (PetscBool)(body_comes(c, from, a) || body_comes(c, from, b));
 }
 
+/* What the boundary bears in the state that the case would have begun with. */
+static PetscErrorCode ForgetReactions(Model *m)
+{
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(m->nodes->held, dofs));
+  PetscCall(PetscArrayzero(m->nodes->rate, dofs));
+  PetscCall(PetscArrayzero(m->nodes->reaction, dofs));
+  PetscFunctionReturn(0);
+}
+
 /* All that the tables give; reason where they make no sense. */
 static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool next, PetscBool onto, Diag *diag,
                            char reason[256])
@@ -128,6 +140,7 @@ static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool
 
   PetscFunctionBeginUser;
   PetscCall(ReasonShare(m->comm, reason));
+  PetscCall(ForgetReactions(m));
   if (!reason[0] && m->method->clouds) PetscCall(StateCloudNodes(m, tables, &home, reason));
   if (!reason[0] && next) PetscCall(RenameTables(m, from, tables));
   if (!reason[0] && next) PetscCall(StateGoOn(m, tables, reason));
