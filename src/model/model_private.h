@@ -237,6 +237,8 @@ PetscErrorCode ContactGoOn(Model *model, PetscReal *external);
 PetscErrorCode ContactRemembered(Model *model, PetscReal *external);
 /* Collective, after one of them: these forces are what walls give to the first acceleration. */
 PetscErrorCode ContactBegin(Model *model, PetscBool remembered);
+/* Collective. Another run's state: what walls and interfaces bear before the first step. */
+PetscErrorCode ContactTell(Model *model);
 /* Does a wall or an interface of the case rub? Then tangents are not symmetric. */
 PetscBool contact_rubs(const Case *c);
 /* Collective, in PrepareStep: what is in contact starts the step with the motion of its wall. */

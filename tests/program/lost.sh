@@ -122,4 +122,24 @@ measures: {yy: {stress: yy, of: {tracer: [80.3, 0.12]}}, top: {stress: yy, of: {
 END
 expect "flat cells" 0 "$talus" run flat.yaml --out flat
 awk -F, 'END { exit !($3 > -1650 && $3 < -1550 && $4 > -100 && $4 < 50) }' flat/history.csv || fail "$name: $(tail -n 1 flat/history.csv)"
+
+# A block that flies out of the grid in laps of explicit substeps takes its momentum and energy along, wherever it began.
+cat >leaves.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: explicit, end: 0.4, step: 0.01}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.1, outside: remove}
+bodies: [{name: a, shape: {box: {min: [0.3, 0.4], max: [0.5, 0.6]}}, points_per_cell: 4, material: m, velocity: [2, 0]}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
+measures: {p: {momentum: x}, gone: {outside_momentum: x}, energy: {energy: outside}}
+END
+for basis in gimp cell; do
+  for from in 0.3 0.31 0.34 0.37; do
+    turn
+    expect "what flies out, $basis from $from on $ranks" 0 on_ranks $ranks "$talus" run leaves.yaml --out leaves --force --quiet --set "basis={$basis: {}}" \
+      --set "bodies[0].shape.box={min: [$from, 0.4], max: [$(awk "BEGIN { print $from + 0.2 }"), 0.6]}"
+    awk -F, 'NR > 1 && ($3 + $4 - 80) ^ 2 > 1e-18 { exit 1 } END { exit !($4 > 79.9 && ($5 - 80) ^ 2 < 1e-18) }' leaves/history.csv || fail "$name: $(tail -n 1 leaves/history.csv)"
+  done
+done
+
 finish

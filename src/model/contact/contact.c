@@ -126,6 +126,17 @@ PetscErrorCode ContactBegin(Model *m, PetscBool remembered)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode ContactTell(Model *m)
+{
+  Contact *s = m->contact;
+
+  PetscFunctionBeginUser;
+  PetscCall(ContactBegin(m, PETSC_FALSE));
+  for (PetscInt k = 0; s && k < s->n_partners; ++k) s->wall[k].mean = s->wall[k].rate;
+  PetscCall(ContactBegin(m, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactTouches(const Contact *s, MPI_Comm comm, PetscBool *any)
 {
   PetscBool here = PETSC_FALSE;

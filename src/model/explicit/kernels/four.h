@@ -15,6 +15,8 @@ typedef Four FourAnywhere __attribute__((aligned(sizeof(PetscReal)), may_alias))
 typedef int64_t FourBits __attribute__((vector_size(4 * sizeof(int64_t))));
 typedef int32_t FourCells __attribute__((vector_size(4 * sizeof(int32_t))));
 
+#define EDGE 1e-3 /* of a cell: points that leave take a step as long */
+
 #define FOUR(at) (*(FourAnywhere *)(at))
 #define FOUR_OF(at) (*(const FourAnywhere *)(at))
 
@@ -42,10 +44,15 @@ KERNEL void put(const Four *from, PetscInt n, PetscReal *to)
 
 KERNEL void turn(Four r[4]) { TRANSPOSE_FOUR(Four, r); }
 
-/* Cells of four points along one axis, and where in them; beyond the box, its last ones. */
+/* Cells of four points along one axis, and where in them. What comes out of the box in a lap is not farther than at its
+ * edge: beyond it, and at it by a last digit, nodes would have a mass below zero, and no motion. */
 KERNEL void locate_along(const Lattice *l, const int d, const Four *x, FourCells *first, PetscReal *at)
 {
-  const Four s = (*x - l->origin[d]) * l->per_length[d];
+  const Four zero = {0}, lowest = zero + (l->end[d][0] + EDGE), highest = zero + (l->end[d][1] - EDGE);
+  Four s = (*x - l->origin[d]) * l->per_length[d];
+  const FourBits below = s < lowest;
+  const FourBits above = s > highest;
+  s = (Four)((below & (FourBits)lowest) | (above & (FourBits)highest) | (~(below | above) & (FourBits)s));
   const FourBits inside = s > 0.0;
   Four low = (Four)((FourBits)s & inside), most = (Four){0} + (PetscReal)l->most[d];
   const FourBits less = low < most;
