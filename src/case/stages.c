@@ -24,6 +24,12 @@ static void shift_material(MaterialSpec *m, const PetscReal *start)
     m->amplitudes[k].amplitude.origin = start[m->amplitudes[k].amplitude.since];
 }
 
+static void shift_window(MeasureSpec *m, const PetscReal *start)
+{
+  if (m->window[0] == m->window[1]) return; /* of the last so many seconds, wherever these are */
+  for (int k = 0; k < 2; ++k) m->window[k] += start[m->since];
+}
+
 void case_begin(Case *c, const PetscReal *start)
 {
   c->start = start[c->stage];
@@ -33,6 +39,7 @@ void case_begin(Case *c, const PetscReal *start)
   for (PetscInt k = 0; k < c->n_walls; ++k) shift_wall(&c->walls[k], start);
   for (PetscInt k = 0; k < c->n_materials; ++k) shift_material(&c->materials[k], start);
   for (PetscInt k = 0; k < c->n_loads; ++k) c->loads[k].amplitude.origin = start[c->loads[k].amplitude.since];
+  for (PetscInt k = 0; k < c->n_measures; ++k) shift_window(&c->measures[k], start);
   c->gravity_amplitude.origin = start[c->gravity_amplitude.since];
 }
 

@@ -321,6 +321,24 @@ static void check_units(const Case *whole, PetscInt k, Diag *diag)
   diag_of_stage(diag, -1, NULL);
 }
 
+/* Windows count from the start of the stage that brings their measure, which may go on through all later ones. */
+static void check_windows(const Case *whole, PetscInt k, Diag *diag)
+{
+  const Case *c = whole->stage_case[k];
+  PetscReal left = 0;
+  char path[512];
+  for (PetscInt j = k; j < whole->n_stages; ++j) left += whole->stage_case[j]->analysis.end;
+  diag_of_stage(diag, k, whole->stages[k].name);
+  for (PetscInt i = 0; i < c->n_measures; ++i) {
+    const MeasureSpec *m = &c->measures[i];
+    if (m->since != k || m->window[0] >= m->window[1] || m->window[0] < left) continue;
+    snprintf(path, sizeof path, "measures.%s.%s.window", m->name, m->has_rate ? "rate" : "mean");
+    diag_error(diag, path, "the window of '%s' begins when the run is over, %g s after the stage began", m->name,
+               (double)left);
+  }
+  diag_of_stage(diag, -1, NULL);
+}
+
 static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag *diag, Case *whole)
 {
   YamlNode *root = document->root;
@@ -347,7 +365,10 @@ static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag 
   if (diag_errors(diag) > before) PetscFunctionReturn(0);
   PetscCall(CaseCollectColumns(whole));
   case_tell_leaving(whole);
-  for (PetscInt k = 0; k < whole->n_stages; ++k) check_units(whole, k, diag);
+  for (PetscInt k = 0; k < whole->n_stages; ++k) {
+    check_units(whole, k, diag);
+    check_windows(whole, k, diag);
+  }
   PetscFunctionReturn(0);
 }
 

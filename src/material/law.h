@@ -29,6 +29,7 @@ typedef struct {
   PetscBool not_mixed;          /* in the mixed formulation only the default will do */
   const char *absent;           /* what counts where it is not given, and the law gets NAN; or NULL */
   const LawWord *const *words;  /* the number is that of one of these, ended by NULL; else NULL */
+  PetscBool at_start;           /* it says how a point begins, and nothing of one that has a state */
 } LawParameter;
 
 typedef struct {

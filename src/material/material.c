@@ -298,6 +298,9 @@ static void check_amplitudes(const Case *c, PetscInt index, const Material *mate
     path_of(&r, key, path);
     if (parameter >= 0 && material->law->parameters[parameter].words)
       diag_error(diag, path, "%s of the law %s is a word, and no number that could change", name, material->law->name);
+    else if (parameter >= 0 && material->law->parameters[parameter].at_start)
+      diag_error(diag, path, "%s says how points of the law %s begin, and cannot change with time", name,
+                 material->law->name);
     else if (strcmp(name, "density") && !find_value(spec, name)) {
       diag_error(diag, path, "the material '%s' has no '%s' that could change with time", spec->name, name);
       diag_hint_names(diag, name, names);

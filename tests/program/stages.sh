@@ -513,4 +513,25 @@ for ranks in 1 3; do
   expect "a load is left out, $ranks" 0 on_ranks $ranks timeout 60 "$talus" run drop.yaml --out drop --force --quiet
   awk -F, 'END { exit !(($4 - 20000) ^ 2 < 1e-4) }' drop/history.csv || fail "$name: $(tail -n 1 drop/history.csv)"
 done
+
+# Windows count from the stage that brings their measure, and may lie in a later one.
+cat >window.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 10}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.5}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, material: r}]
+materials: {r: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{name: base, on: {boundary: bottom}, fix: [x, y]}]
+loads: {tractions: [{name: t, on: {body: b, y: 1}, value: [0, -1000], amplitude: [[0, 0], [2, 2]]}]}
+measures: {later: {reaction: y, of: {boundary: base}, mean: {window: [1.2, 1.8]}}}
+stages:
+  - {name: first}
+  - {name: second, measures: {own: {reaction: y, of: {boundary: base}, mean: {window: [0.2, 0.8]}}}}
+END
+expect "windows" 0 "$talus" run window.yaml --out window --force --quiet
+awk -F, 'END { exit !(($4 - 1500) ^ 2 < 1e-6 && ($5 - 1500) ^ 2 < 1e-6) }' window/history.csv || fail "$name: $(tail -n 1 window/history.csv)"
+expect "a window when all is over" 2 "$talus" check window.yaml --set 'measures.later.mean.window=[2, 3]'
+says err.txt "the window of 'later' begins when the run is over, 2 s after the stage began (stage 'first')"
+
 finish

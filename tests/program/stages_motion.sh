@@ -216,6 +216,11 @@ for method in fem mpm; do
   expect "clay in a stage, $method" 0 "$talus" run placed.yaml --out placed --force --set method=$method
   awk -F, 'NR > 2 && ($4 > 80001 || $4 < 79999 || $5 > -19999 || $5 < -20001) { exit 1 }' placed/history.csv || fail "$name: $(cat placed/history.csv)"
 done
+# How clay begins is no number that could change while it is there.
+expect "clay that has been pressed by more, in a stage" 2 "$talus" check clay.yaml --set 'stages=[{name: a}, {name: b, materials: {clay: {ocr: 3}}}]'
+says err.txt "ocr says how points begin, and those of 'clay' have a state: it would change nothing"
+expect "with time" 2 "$talus" check clay.yaml --set 'materials.clay.amplitude={ocr: [[0, 1], [1, 2]]}'
+says err.txt "ocr says how points of the law modified-cam-clay begin, and cannot change with time"
 expect "clay that comes in a stage" 2 "$talus" check placed.yaml --set 'stages[1].bodies[1]={name: more, shape: {box: {min: [0, 2], max: [2, 2.5]}}, material: clay}'
 says err.txt "'more' is of modified-cam-clay, which has no state without stress"
 
@@ -448,5 +453,16 @@ for method in mpm fem gmm; do
     rm -rf before && mv goes before
   done
 done
+
+# Bodies find their state by their names, and who finds none is told of.
+expect "the state of a block" 0 "$talus" run rests.yaml --force --quiet --out rests
+expect "another name" 2 "$talus" run goes.yaml --force --out goes --set bodies[0].name=Block
+says err.txt "error: the run of \`initial\` has no body 'Block': nothing of its state would go on" "hint: did you mean 'block'?"
+more='bodies[1]={name: more, shape: {box: {min: [0.5, 1], max: [1.5, 1.25]}}, material: rubber}'
+expect "one more" 0 "$talus" run goes.yaml --force --out goes --set "$more"
+says err.txt "warning: the run of \`initial\` has no body 'more': it begins as it is drawn"
+expect "two" 0 "$talus" run rests.yaml --force --quiet --out rests --set "$more"
+expect "one less" 0 "$talus" run goes.yaml --force --out goes
+says err.txt "warning: 'more' of that run is not among the bodies here: it stays behind"
 
 finish

@@ -12,7 +12,7 @@ static const CliOption options_known[] = {
   {"out", "DIR", "where the results go; default: runs/<name of the case>"},
   {"force", NULL, "replace a run that is in DIR already"},
   {"resume", "RUN_DIR", "go on with the run in DIR from its newest checkpoint, on any number of ranks; no CASE then"},
-  {"quiet", NULL, "nothing on the terminal but errors"},
+  {"quiet", NULL, "nothing on the terminal but errors and warnings"},
   {"log", "FILE", "write the log there instead of to DIR/log.txt"},
   CLI_LAW_OPTIONS,
   {"trust", NULL,

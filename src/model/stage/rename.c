@@ -239,12 +239,47 @@ static void check_stresses(const Case *c, const Case *from, Diag *diag)
   }
 }
 
+static const MaterialSpec *material_of(const Case *c, PetscInt body)
+{
+  PetscInt i = 0;
+  while (strcmp(c->materials[i].name, c->bodies[body].material)) ++i;
+  return c->materials + i;
+}
+
+/* NAN: not given. */
+static PetscReal value_of(const MaterialSpec *s, const char *name)
+{
+  for (PetscInt i = 0; i < s->n_parameters; ++i)
+    if (!strcmp(s->parameters[i].name, name)) return s->parameters[i].value;
+  return NAN;
+}
+
+/* What says how points begin means nothing to those that are there. */
+static void check_starts(const Case *c, const Case *from, Diag *diag)
+{
+  char path[256];
+  for (PetscInt b = 0; b < c->n_bodies; ++b) {
+    if (c->bodies[b].absent || body_comes(c, from, b)) continue;
+    const MaterialSpec *is = material_of(c, b), *was = material_of(from, case_body(from, c->bodies[b].name));
+    const Law *law = strcmp(is->law, was->law) ? NULL : law_find(is->law);
+    for (const LawParameter *p = law ? law->parameters : NULL; p && p->name; ++p) {
+      const PetscReal now = value_of(is, p->name), before = value_of(was, p->name);
+      if (!p->at_start || now == before || (isnan(now) && isnan(before))) continue;
+      snprintf(path, sizeof path, "materials.%s.%s", is->name, p->name);
+      diag_error(diag, path, "%s says how points begin, and those of '%s' have a state: it would change nothing",
+                 p->name, c->bodies[b].name);
+      diag_hint(diag, "give it from the start, or with the stage in which the body takes this law");
+    }
+  }
+}
+
 PetscErrorCode RenameCheck(const Case *c, const Case *from, PetscBool next, Diag *diag)
 {
   const Method *method = method_find(c->method);
 
   PetscFunctionBeginUser;
   PetscCall(LoadsCheck(c, from, next, diag));
+  check_starts(c, from, diag);
   if (method && method->clouds) clouds_check(c, from, diag);
   if (next) check_walls(c, from, diag);
   if (next) check_interfaces(c, from, diag);

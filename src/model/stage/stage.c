@@ -20,6 +20,31 @@ static void check_motion(const Case *c, const Case *from, Diag *diag)
   }
 }
 
+/* Bodies find their state by their names: who has none begins as drawn, and that of others stays behind. */
+static PetscErrorCode CheckNames(const Case *c, const Case *from, Diag *diag)
+{
+  const char **there;
+  char path[64];
+  PetscInt goes_on = 0;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(from->n_bodies + 1, &there));
+  for (PetscInt b = 0; b < c->n_bodies; ++b) goes_on += !c->bodies[b].absent && !body_comes(c, from, b);
+  for (PetscInt b = 0; b < from->n_bodies; ++b) there[b] = from->bodies[b].name;
+  for (PetscInt b = 0; b < c->n_bodies; ++b) {
+    if (c->bodies[b].absent || !body_comes(c, from, b)) continue;
+    snprintf(path, sizeof path, "bodies[%d].name", (int)b);
+    (goes_on ? diag_warning : diag_error)(diag, path, "the run of `initial` has no body '%s': %s", c->bodies[b].name,
+                                          goes_on ? "it begins as it is drawn" : "nothing of its state would go on");
+    diag_hint_names(diag, c->bodies[b].name, there);
+  }
+  for (PetscInt b = 0; b < from->n_bodies && goes_on; ++b)
+    if (!from->bodies[b].absent && body_goes(c, from, b))
+      diag_warning(diag, "initial.run", "'%s' of that run is not among the bodies here: it stays behind", there[b]);
+  PetscCall(PetscFree(there));
+  PetscFunctionReturn(0);
+}
+
 /* What no state can be made of, by its name. */
 static PetscErrorCode CheckCases(const Model *m, const Case *from, PetscBool next, Diag *diag)
 {
@@ -35,6 +60,7 @@ static PetscErrorCode CheckCases(const Model *m, const Case *from, PetscBool nex
                from->formulation);
   PetscCall(RenameCheck(c, from, next, diag));
   if (!next) check_motion(c, from, diag);
+  if (!next) PetscCall(CheckNames(c, from, diag));
   PetscFunctionReturn(0);
 }
 

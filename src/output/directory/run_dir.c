@@ -226,6 +226,16 @@ static void print(RunDir *dir, const char *format, va_list arguments)
   fflush(stdout);
 }
 
+/* A line of the log that warns, of who wants to hear nothing else. */
+static void print_warning(const char *format, va_list arguments)
+{
+  static const char mark[] = "warning = ";
+  if (strncmp(format, mark, sizeof mark - 1) != 0) return;
+  fputs("warning: ", stderr);
+  vfprintf(stderr, format + sizeof mark - 1, arguments);
+  fputc('\n', stderr);
+}
+
 PetscErrorCode RunDirLog(RunDir *dir, const char *format, ...)
 {
   va_list arguments, again;
@@ -237,6 +247,7 @@ PetscErrorCode RunDirLog(RunDir *dir, const char *format, ...)
   if (dir->log) vfprintf(dir->log, format, arguments), fputc('\n', dir->log);
   run_dir_note_log(dir);
   if (!dir->quiet) print(dir, format, again);
+  else print_warning(format, again);
   va_end(again);
   va_end(arguments);
   PetscFunctionReturn(0);

@@ -123,7 +123,8 @@ static const SchemaTable avalanches = {.name = "avalanches",
                                        .hide = hide_in_avalanches};
 
 /* --- its rate, its mean --- */
-#define SPAN " all steps: of the last so many seconds, or [from, to]: between two times"
+#define SPAN \
+  " all steps: of the last so many seconds, or [from, to]: between two times (from the start of the stage that brings it)"
 #define WINDOW(help)                                                                         \
   KEY("window", INTERVAL, "s", help SPAN, REQUIRED, AT_LEAST(0), AT(MeasureSpec, window[0]), \
       .second = offsetof(MeasureSpec, window[1]))
@@ -220,6 +221,12 @@ static void check_beside(SchemaReader *r, const YamlNode *mapping, const Measure
   }
 }
 
+/* Do more stages come, or has one begun? The case knows how long they take (case_file.c). */
+static PetscBool has_stages(const SchemaReader *r)
+{
+  return (PetscBool)(r->document->n_stages > 0 || yaml_find(r->document->root, "stages"));
+}
+
 static void check_window(SchemaReader *r, const YamlNode *mapping, const MeasureSpec *m, const char *path)
 {
   const char *over = m->has_rate ? "rate" : "mean";
@@ -229,7 +236,7 @@ static void check_window(SchemaReader *r, const YamlNode *mapping, const Measure
   if (!window) return;
   if (m->window[0] == m->window[1] && !(m->window[0] > 0))
     SchemaError(r, window, "%s.%s.window must be longer than 0 s", path, over);
-  else if (m->window[0] < m->window[1] && m->window[0] >= r->c->analysis.end)
+  else if (m->window[0] < m->window[1] && m->window[0] >= r->c->analysis.end && !has_stages(r))
     SchemaError(r, window, "%s.%s.window begins when the run is over, at %g s (analysis.end)", path, over,
                 (double)r->c->analysis.end);
 }

@@ -121,14 +121,15 @@ static const char *extent_of(PetscInt dim, const PetscReal *min, const PetscReal
   return text;
 }
 
-/* A mesh goes with its body, which may well come to a wall that it does not reach at the start. */
+/* A mesh goes with its body, which may well come to a wall that it does not reach at the start, as a wall that moves may
+ * come into the grid. */
 static void advise_wall(const Model *m, PetscInt k, Diag *diag)
 {
   const WallSpec *wall = m->c->walls + k;
   PetscReal min[3], max[3];
   PetscBool apart = PETSC_FALSE;
   char path[64], walls[192], grid[192];
-  if (!m->method->restores_grid || wall->n_motions || wall->inside) return;
+  if (!m->method->restores_grid || wall->n_motions || wall->has_mass || wall->inside) return;
   wall_bounds(m->walls, k, 0, min, max);
   for (PetscInt d = 0; d < m->dim; ++d) apart |= min[d] > m->grid->max[d] || max[d] < m->grid->min[d];
   if (!apart) return;
