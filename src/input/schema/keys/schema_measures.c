@@ -123,8 +123,7 @@ static const SchemaTable avalanches = {.name = "avalanches",
                                        .hide = hide_in_avalanches};
 
 /* --- its rate, its mean --- */
-#define SPAN \
-  " all steps: of the last so many seconds, or [from, to]: between two times (from the start of the stage that brings it)"
+#define SPAN " all steps: of the last so many seconds, or [from, to]: between two times, from when its stage began"
 #define WINDOW(help)                                                                         \
   KEY("window", INTERVAL, "s", help SPAN, REQUIRED, AT_LEAST(0), AT(MeasureSpec, window[0]), \
       .second = offsetof(MeasureSpec, window[1]))
