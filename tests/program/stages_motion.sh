@@ -465,4 +465,14 @@ expect "two" 0 "$talus" run rests.yaml --force --quiet --out rests --set "$more"
 expect "one less" 0 "$talus" run goes.yaml --force --out goes
 says err.txt "warning: 'more' of that run is not among the bodies here: it stays behind"
 
+# What has been dissipated is the account of the run that did it.
+for method in mpm fem gmm; do
+  for run in rests goes; do
+    expect "metal that yields, $run, $method" 0 "$talus" run $run.yaml --force --quiet --out $run --set method=$method --set 'measures={lost: {energy: dissipated}}' \
+      --set 'materials.rubber={law: j2, density: 1000, young: 1e6, poisson: 0.3, yield_stress: 3e3, hardening: 1e5}'
+  done
+  [ "$(tail -n 1 rests/history.csv | awk -F, '{ print ($3 > 10) }')" = 1 ] || fail "$name: nothing yields"
+  sed -n 2p goes/history.csv | awk -F, '{ exit !($3 ^ 2 < 1e-12) }' || fail "$name: $(sed -n 2p goes/history.csv)"
+done
+
 finish

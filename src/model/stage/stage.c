@@ -255,6 +255,7 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   PetscCall(HoldImbalance(m, from, imbalance));
+  if (!next) PetscCall(EnergyStart(m)); /* what was dissipated is the other run's */
   if (!next) PetscCall(ContactTell(m));
   PetscCall(BeginAcceleration(m, from, tables));
   PetscFunctionReturn(0);
