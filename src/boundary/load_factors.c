@@ -46,37 +46,53 @@ PetscErrorCode LoadFactorsOfFaces(const Loads *l, PetscInt load, PetscReal t, Pe
   PetscFunctionReturn(0);
 }
 
+/* Places in which a carrier's factor is asked for: a piece of a surface has its mean over the Gauss points of it. */
+static PetscInt samples_of(const Loads *l) { return loads_have_pieces(l) ? 1 << (l->dim - 1) : 1; }
+
+/* Sample q of carrier p. An edge that has stretched counts as it is now for X, too. */
+static void sample(const Loads *l, PetscInt p, PetscInt q, PetscReal X[3], PetscReal x[3])
+{
+  const Points *carriers = l->carriers;
+  const PetscInt dim = l->dim;
+  for (PetscInt d = 0; d < dim; ++d) {
+    x[d] = point_real(carriers, POINT_X, p)[d];
+    X[d] = x[d] - point_real(carriers, POINT_U, p)[d];
+  }
+  for (PetscInt d = 0; d < carriers->components[POINT_LEAN]; ++d) {
+    x[d] += load_lean(point_real(carriers, POINT_X, p), point_real(carriers, POINT_EDGE, p), d);
+    X[d] += point_real(carriers, POINT_LEAN, p)[d];
+  }
+  for (PetscInt k = 0; k < carriers->components[POINT_EDGE]; ++k) {
+    const PetscReal side = (q >> k / dim & 1 ? 1 : -1) / PetscSqrtReal(3);
+    x[k % dim] += side * point_real(carriers, POINT_EDGE, p)[k];
+    X[k % dim] += side * point_real(carriers, POINT_EDGE, p)[k];
+  }
+}
+
 /* One load's carriers, gathered from among all, and their factors put back. */
 static PetscErrorCode Ask(const Loads *l, PetscInt load, PetscReal t, PetscReal *f)
 {
   const Points *carriers = l->carriers;
-  const PetscInt dim = l->dim;
-  PetscReal *X, *x, *one;
+  const PetscInt samples = samples_of(l);
+  PetscReal *X, *x, *all;
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < carriers->n; ++p) n += carriers->body[p] == load;
+  for (PetscInt p = 0; p < carriers->n; ++p) n += samples * (carriers->body[p] == load);
   PetscCall(PetscCalloc2(3 * n, &X, 3 * n, &x));
-  PetscCall(Ones(n, &one));
-  n = 0;
-  for (PetscInt p = 0; p < carriers->n; ++p) {
-    if (carriers->body[p] != load) continue;
-    for (PetscInt d = 0; d < dim; ++d) {
-      x[3 * n + d] = point_real(carriers, POINT_X, p)[d];
-      X[3 * n + d] = x[3 * n + d] - point_real(carriers, POINT_U, p)[d];
-    }
-    for (PetscInt d = 0; d < carriers->components[POINT_LEAN]; ++d) {
-      x[3 * n + d] += load_lean(point_real(carriers, POINT_X, p), point_real(carriers, POINT_EDGE, p), d);
-      X[3 * n + d] += point_real(carriers, POINT_LEAN, p)[d];
-    }
-    ++n;
-  }
-  PetscCall(Evaluate(l, load, n, X, x, t, one));
+  PetscCall(Ones(n, &all));
   n = 0;
   for (PetscInt p = 0; p < carriers->n; ++p)
-    for (int d = 0; carriers->body[p] == load && d < 3; ++d) f[3 * p + d] = one[n++];
+    for (PetscInt q = 0; carriers->body[p] == load && q < samples; ++q, ++n) sample(l, p, q, X + 3 * n, x + 3 * n);
+  PetscCall(Evaluate(l, load, n, X, x, t, all));
+  const PetscReal *one = all;
+  for (PetscInt p = 0; p < carriers->n; ++p) {
+    if (carriers->body[p] != load) continue;
+    for (int d = 0; d < 3; ++d) f[3 * p + d] = 0;
+    for (PetscInt i = 0; i < 3 * samples; ++i) f[3 * p + i % 3] += *one++ / (PetscReal)samples;
+  }
   PetscCall(PetscFree2(X, x));
-  PetscCall(PetscFree(one));
+  PetscCall(PetscFree(all));
   PetscFunctionReturn(0);
 }
 

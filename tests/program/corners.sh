@@ -88,4 +88,24 @@ for ranks in 1 3; do
   awk -F, 'NR > 2 && $2 % 2 == 0 { n += 1; if (($4 / -60 - 1) ^ 2 > 0.005 ^ 2 || ($5 / -140 - 1) ^ 2 > 0.005 ^ 2) bad = 1 }
     END { exit bad || n < 3 }' run/history.csv || { fail "$name"; cat run/history.csv; }
 done
+
+# A load that varies along a side which the grid cuts anywhere: quadratic ones are exact, what bends within a piece nearly.
+cat >varies.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [-1, -0.5], max: [2.5, 1.5]}, size: 0.25}
+bodies: [{name: s, shape: {box: {min: [0, 0.07], max: [1, 1.07]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 2000, young: 1e9, poisson: 0.3}}
+walls: [{name: w, shape: {half-space: {point: [0, 0.07], normal: [0, 1]}}, contact: stick}]
+loads: {gravity: [0, -10], tractions: [{on: {x: 0, body: s}, value: [3e4, 0], factor: (y - 0.07)^2}]}
+measures: {P: {wall_force: x, of: {wall: w}}}
+END
+for load in '(y - 0.07)^2:-10000:1e-6' 'max(0, 1 - (y - 0.07) / 0.25):-3750:40'; do
+  rest=${load#*:}
+  turn
+  expect "a load that varies, ${load%%:*} on $ranks" 0 on_ranks $ranks "$talus" run varies.yaml --out varies --force --quiet --set "loads.tractions[0].factor=${load%%:*}"
+  tail -n 1 varies/history.csv | awk -F, -v is="${rest%:*}" -v off="${rest#*:}" '{ exit !($3 - is < off && is - $3 < off) }' || fail "$name: $(tail -n 1 varies/history.csv)"
+done
+
 finish
