@@ -93,6 +93,11 @@ static PetscBool is_led(const Discretisation *s, const Extension *e, PetscInt no
   return PETSC_TRUE;
 }
 
+PetscBool node_needs_lead(const Extension *e, PetscInt node)
+{
+  return (PetscBool)(e->loaded[node] > 0 && e->fill[node] < LEADS);
+}
+
 /* Does a node with so little follow, if others lead it? Where a load acts more is asked for: a node has to have
  * stiffness for what it bears, and that it has no material at all is no hindrance. */
 static PetscBool wants_lead(const Discretisation *s, const Extension *e, PetscInt node, const PetscInt at[LATTICE])

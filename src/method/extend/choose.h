@@ -8,3 +8,5 @@ PetscErrorCode ChooseWays(const Discretisation *space, Extension *extension);
  * 0. */
 PetscErrorCode ChooseWaysAmong(const Discretisation *space, Extension *extension, PetscInt n_leaders,
                                const PetscInt *leader, PetscInt n, const PetscInt *node);
+/* Does a load act on a node that has too little to bear it by itself? It cannot stay. */
+PetscBool node_needs_lead(const Extension *extension, PetscInt node);

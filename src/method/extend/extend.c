@@ -214,6 +214,7 @@ PetscErrorCode DiscretisationExtend(Discretisation *s, const BasisInput *in)
   if (!extension_works(s)) PetscFunctionReturn(0);
   PetscCall(ExtensionLoaded(s));
   PetscCall(ChooseWays(s, e));
+  PetscCall(ExtensionSpare(s));
   PetscCall(ExtensionKeep(s));
   PetscCall(ExtensionList(s, s->grid->n_nodes, NULL, &e->any));
   if (e->n_followers) PetscCall(RewriteAll(s));

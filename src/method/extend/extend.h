@@ -48,6 +48,9 @@ PetscBool extension_bends(const void *space, PetscInt p, PetscInt n, PetscReal *
  * `stride` numbers a node, on all copies. *any: on any rank. */
 PetscErrorCode ExtensionByMass(Discretisation *space, PetscInt n, const PetscInt *active, PetscInt stride,
                                const PetscReal *mass, PetscBool *any);
+/* Collective. Takes the ways of followers that would leave a node behind next to no volume, and so no mass, of its own:
+ * the opposite corners of two cells' width have as much as each other. */
+PetscErrorCode ExtensionSpare(const Discretisation *space);
 /* Collective. n numbers a node, on all copies before and after: those of followers go to the nodes that they follow,
  * and are 0; followers take what these have. */
 PetscErrorCode ExtensionGive(const Discretisation *space, PetscInt n, PetscReal *sum);

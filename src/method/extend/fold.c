@@ -6,6 +6,9 @@
 #include "method/extend/row.h"
 
 #define KEEPS 0.7 /* of its mass: no less is left to a node that leads */
+/* The same in implicit steps, where followers stay if it would be less: nobody follows in part there. With half of it
+ * three cells of a full body would have no followers in space. */
+#define LEAVES 0.25
 
 /* The row of a follower on one of its ways whose first leader this rank owns: it alone knows all of a row. */
 static PetscBool owned_row(const Discretisation *s, PetscInt follower, PetscInt way, Row *row)
@@ -147,6 +150,53 @@ static PetscErrorCode SpareLeaders(const Discretisation *s, PetscInt n, const Pe
   }
   PetscCall(GridToGhosts(s->grid, 1, e->lean));
   PetscCall(PetscFree(taken));
+  PetscFunctionReturn(0);
+}
+
+/* What the list's followers take from the nodes behind, times what each has of its own; on all copies. */
+static PetscErrorCode Taken(const Discretisation *s, PetscReal *taken)
+{
+  const Extension *e = s->extension;
+  Row row;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(taken, s->grid->n_nodes));
+  for (PetscInt k = 0; k < e->n_followers; ++k)
+    for (PetscInt way = 0; way < WAYS; ++way) {
+      const PetscInt node = e->follower[k];
+      if (!owned_row(s, node, way, &row)) continue;
+      for (PetscInt I = 0; I < row.n; ++I)
+        taken[row.node[I]] += PetscMax(0, -row.N[I]) * e->fill[node] * s->whole[node];
+    }
+  PetscCall(Exchange(s->grid, 1, taken));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ExtensionSpare(const Discretisation *s)
+{
+  const PetscInt n = s->grid->n_nodes;
+  Extension *e = s->extension;
+  PetscReal *taken, *stays;
+  PetscBool any;
+  Row row;
+
+  PetscFunctionBeginUser;
+  PetscCall(ExtensionList(s, n, NULL, &any));
+  if (!any) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc2(n, &taken, n, &stays));
+  PetscCall(Taken(s, taken));
+  for (PetscInt k = 0; k < e->n_followers; ++k)
+    for (PetscInt way = 0; way < WAYS; ++way) {
+      if (!owned_row(s, e->follower[k], way, &row)) continue;
+      for (PetscInt I = 0; I < row.n; ++I) {
+        const PetscInt node = row.node[I];
+        if (row.N[I] < 0 && taken[node] > (1 - LEAVES) * e->fill[node] * s->whole[node]) stays[e->follower[k]] = 1;
+      }
+    }
+  PetscCall(Exchange(s->grid, 1, stays));
+  for (PetscInt i = 0; i < n; ++i)
+    if (stays[i] > 0 && !node_needs_lead(e, i)) e->ways[i] = 0;
+  PetscCall(PetscFree2(taken, stays));
   PetscFunctionReturn(0);
 }
 
