@@ -302,6 +302,9 @@ PetscErrorCode UnheldHold(Model *model);
 /* step/unheld_borne.c. Collective. Newton converged: goes on without those that keep the body from turning if they bear
  * anything, and has not converged if the others do. */
 PetscErrorCode UnheldJudge(Model *model, StepProblem *problem, const LinearProblem *linear, StepReport *report);
+/* Collective. body: n_nodes of the mesh, > 0 at nodes of a body, on all copies; beyond: n_owned, is it out of reach of
+ * all material behind a face that is held in more directions than it is? */
+PetscErrorCode CloudBeyondFaces(const Model *model, const PetscReal *body, unsigned char *beyond);
 /* Collective. After the first step's clouds are known: tell which bodies hang on an obstacle from
  * the start. */
 PetscErrorCode ModelWarnOfObstacles(const Model *model, Diag *diag);

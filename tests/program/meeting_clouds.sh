@@ -133,4 +133,26 @@ for ranks in 1 2; do
   awk -F, '$1 > 0.299 && $1 < 0.301 { fell = $3 } END { exit !((fell / (200 * 4.905 * 0.3) - 1) ^ 2 < 0.001 ^ 2 && $3 < 0) }' run/history.csv ||
     fail "$name: $(tail -n 1 run/history.csv)"
 done
+
+# A face that is held stays so whatever the boundary holds beyond it: nodes that are free there are in no cloud of the face.
+cat >face.yaml <<'END'
+kinematics: plane-strain
+method: gmm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [-1, -0.5], max: [2, 2]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{on: {y: 0, x: [0, 1]}, fix: [x, y]}]
+loads: {gravity: [1, 0]}
+measures: {u: {displacement: x, of: {tracer: [0.5, 1]}}}
+END
+expect "a held foot" 0 "$talus" run face.yaml --out alone --force --quiet
+for held in '{on: {y: [-0.5, -0.2]}, fix: [y]}' '{on: {x: [-1, 2], y: [-0.5, -0.1]}, fix: [x]}' '{on: {y: 0}, fix: [y]}'; do
+  for ranks in 1 2 3; do
+    expect "a foot and $held on $ranks" 0 on_ranks $ranks "$talus" run face.yaml --out more --force --quiet --set "boundary[1]=$held"
+    tail -n 1 more/history.csv | awk -F, -v is="$(tail -n 1 alone/history.csv | cut -d, -f3)" '{ exit !(($3 / is - 1) ^ 2 < 1e-16) }' ||
+      fail "$name: $(tail -n 1 more/history.csv)"
+  done
+done
+
 finish

@@ -23,21 +23,25 @@ static PetscErrorCode MarkNodes(const Model *m, unsigned char *marked, unsigned 
   const Grid *mesh = m->grid;
   const PetscInt nn = mesh->nodes_per_cell;
   PetscReal *mark;
+  unsigned char *beyond;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(mesh->n_nodes, &mark));
+  PetscCall(PetscMalloc1(mesh->n_owned, &beyond));
   for (PetscInt p = 0; p < m->points->n; ++p)
     for (PetscInt I = 0; I < nn; ++I) mark[mesh->cell_node[m->points->cell[p] * nn + I]] = 1;
   PetscCall(GridSumToOwners(mesh, 1, mark));
-  if (mesh->n_fields > 1) PetscCall(GridToGhosts(mesh, 1, mark));
+  PetscCall(GridToGhosts(mesh, 1, mark));
+  PetscCall(CloudBeyondFaces(m, mark, beyond));
   mark_taken(mesh, mark);
   for (PetscInt i = 0; i < mesh->n_owned; ++i) {
     twin[i] = 0;
     for (PetscInt d = 0; d < m->dim && mark[i] != TAKEN; ++d) twin[i] |= m->boundary->fixed[i * m->dim + d];
-    if (mark[i] <= 0 && boundary_slides_on_axis(m->boundary, i)) twin[i] = 0;
+    if (beyond[i] || (mark[i] <= 0 && boundary_slides_on_axis(m->boundary, i))) twin[i] = 0;
     marked[i] = mark[i] > 0 ? CLOUD_BODY : (twin[i] ? CLOUD_OBSTACLE : 0);
   }
   PetscCall(PetscFree(mark));
+  PetscCall(PetscFree(beyond));
   PetscFunctionReturn(0);
 }
 
