@@ -19,11 +19,12 @@ static PetscBool varies(const Loads *l, PetscInt load) { return l->asked[load].a
 static PetscErrorCode Evaluate(const Loads *l, PetscInt load, PetscInt n, const PetscReal *X, const PetscReal *x,
                                PetscReal t, PetscReal *f)
 {
-  LoadPlace place = {.dim = l->dim, .t = t - l->c->loads[load].amplitude.origin};
+  const PetscReal now = case_time(l->c, t);
+  LoadPlace place = {.dim = l->dim, .t = now - l->c->loads[load].amplitude.origin};
   PetscReal factor;
 
   PetscFunctionBeginUser;
-  if (l->asked[load].ask) l->asked[load].ask(l->asked[load].context, n, X, x, t, f);
+  if (l->asked[load].ask) l->asked[load].ask(l->asked[load].context, n, X, x, now, f);
   for (PetscInt i = 0; i < n && l->c->loads[load].factor; ++i) {
     Formula formula = {.value = LoadPlaceValue, .context = &place, .at = l->c->loads[load].factor};
     place.X = X + 3 * i;

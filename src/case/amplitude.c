@@ -55,7 +55,7 @@ PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t)
   const PetscBool grows = grows_by_itself(c, amplitude);
   /* what is sought when all loads are on: time goes on then, and they stay but for what is raised */
   if (case_raises(c, amplitude)) return PetscMax(0, t - c->analysis.end);
-  if (case_seeks(&c->analysis)) t = PetscMin(t, c->analysis.end);
+  t = case_time(c, t);
   return amplitude_value(amplitude, t, grows ? (t - c->start) / (c->analysis.end - c->start) : 1);
 }
 
@@ -76,7 +76,7 @@ PetscErrorCode LoadPlaceValue(void *context, const char *name, PetscBool *known,
 PetscReal case_material_factor(const Case *c, PetscInt i, const char *parameter, PetscReal t)
 {
   const MaterialSpec *m = &c->materials[i];
-  if (case_seeks(&c->analysis)) t = PetscMin(t, c->analysis.end);
+  t = case_time(c, t);
   for (PetscInt k = 0; k < m->n_amplitudes; ++k)
     if (!strcmp(m->amplitudes[k].name, parameter)) return amplitude_value(&m->amplitudes[k].amplitude, t, 1);
   return 1;

@@ -252,6 +252,8 @@ PetscBool case_seeks(const AnalysisSpec *analysis)
   return analysis->type == ANALYSIS_FACTOR || analysis->type == ANALYSIS_LIMIT;
 }
 
+PetscReal case_time(const Case *c, PetscReal t) { return case_seeks(&c->analysis) ? PetscMin(t, c->analysis.end) : t; }
+
 PetscBool case_writes(const Case *c, const char *field)
 {
   if (c->n_interfaces && !strcmp(field, "body")) return PETSC_TRUE; /* pictures keep them apart */

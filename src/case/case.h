@@ -107,6 +107,9 @@ PetscReal case_courant(const AnalysisSpec *analysis);
 PetscReal case_courant_of_musl(const AnalysisSpec *analysis);
 /* Is something sought after `end`, when all loads are on: a factor of safety, a limit load? */
 PetscBool case_seeks(const AnalysisSpec *analysis);
+/* What a clock shows at time t of a run. While something is sought none goes on: behind `end` what steps are counted by
+ * is a factor, and no time. */
+PetscReal case_time(const Case *c, PetscReal t);
 /* Is that one of the fields of states? */
 PetscBool case_writes(const Case *c, const char *field);
 /* Is what is raised a prescribed displacement, of a boundary or of a wall, and no force? */
@@ -120,8 +123,7 @@ PetscInt case_height_axis(const Case *c);
 PetscBool case_has_stress(const Case *c); /* does any body start with one? */
 /* Is an equilibrium sought before its first step? Of stages that of the first. */
 PetscBool case_equilibrates(const Case *c);
-/* The factor at time t on a parameter of material i, or on its "density": 1 without an amplitude. When
- * something is sought (case_seeks), time ends for materials with `end`. */
+/* The factor at time t on a parameter of material i, or on its "density": 1 without an amplitude. */
 PetscReal case_material_factor(const Case *c, PetscInt i, const char *parameter, PetscReal t);
 /* Does gravity act from the start: is there a stress that carries weight, or an equilibrium with it? */
 PetscBool case_starts_with_gravity(const Case *c);

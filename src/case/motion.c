@@ -11,7 +11,7 @@ static PetscReal displacement_at(const Case *c, const MotionSpec *m, PetscInt d,
 /* Integral of the amplitude up to time t; what moves in another way than it is sought stands still then. */
 static PetscReal span_until(const Case *c, const MotionSpec *m, PetscReal t)
 {
-  return amplitude_integral(&m->amplitude, case_seeks(&c->analysis) ? PetscMin(t, c->analysis.end) : t, 1);
+  return amplitude_integral(&m->amplitude, case_time(c, t), 1);
 }
 
 /* Turn x about the axis through centre by the angle; returns the displacement of component d. */
@@ -31,6 +31,8 @@ static PetscReal rotation(const MotionSpec *m, PetscInt dim, const PetscReal *x,
   const PetscReal s = PetscSinReal(angle / 2), one_less_cos = 2 * s * s;
   return PetscSinReal(angle) * cross + one_less_cos * (axis[d] * along - r[d]);
 }
+
+PetscReal motion_angle(const Case *c, const MotionSpec *m, PetscReal t) { return m->rate * span_until(c, m, t); }
 
 PetscReal motion_increment(const Case *c, const MotionSpec *m, const PetscReal *x, PetscInt d, PetscReal t0,
                            PetscReal t1)

@@ -30,7 +30,7 @@ void frame_at(const Case *c, const WallSpec *wall, PetscReal t, Frame *frame)
   *frame = (Frame){.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   for (PetscInt k = 0; k < wall->n_motions; ++k) {
     const MotionSpec *m = wall->motions + k;
-    if (m->kind == MOTION_ROTATION) turn(m, m->rate * amplitude_integral(&m->amplitude, t, 1), frame);
+    if (m->kind == MOTION_ROTATION) turn(m, motion_angle(c, m, t), frame);
     else
       for (PetscInt d = 0; d < 3; ++d) frame->T[d] += motion_increment(c, m, frame->T, d, m->amplitude.origin, t);
   }
@@ -62,7 +62,7 @@ static void add_motion(const Case *c, const MotionSpec *m, PetscReal t0, PetscRe
 {
   Frame step = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   PetscReal before[3] = {increment[0], increment[1], increment[2]};
-  if (m->kind == MOTION_ROTATION) turn(m, m->rate * amplitude_integral(&m->amplitude, t1, 1), &step);
+  if (m->kind == MOTION_ROTATION) turn(m, motion_angle(c, m, t1), &step);
   frame_turn(&step, before, increment);
   for (PetscInt d = 0; d < 3; ++d) increment[d] += motion_increment(c, m, x, d, t0, t1);
 }

@@ -262,4 +262,47 @@ for ranks in 1 2; do
   awk -F, 'END { exit !($3 > 3.9 && $3 < 4.5) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
 done
 
+# Time ends with the loads (docs/theory.md, 21). Formulas that know t rest, of loads on faces and of pressures that follow
+# them, and in stages (there t counts from theirs): they went on with the factor, which came out as 0.70 for 1.2
+cat >clay_block.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: factor-of-safety, reduction: {tolerance: 1e-3}}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.5}
+bodies:
+  - {name: block, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: soil}
+materials:
+  soil: {law: mohr-coulomb, density: 2000, young: 1e9, poisson: 0.3, friction_angle: 0, cohesion: 60e3}
+boundary: [{on: {boundary: bottom}, fix: [y]}, {on: {x: 0}, fix: [x]}]
+loads: {tractions: [{on: {boundary: top}, value: [0, -1e5]}]}
+measures: {F: {factor_of_safety: value}, lower: {factor_of_safety: lower}, upper: {factor_of_safety: upper}}
+END
+steady="amplitude: [[0, 1], [1, 1]]"
+for loads in "tractions: [{on: {boundary: top}, value: [0, -1e5], factor: t, $steady}]" \
+  "pressures: [{on: {boundary: top}, value: 1e5, factor: t^2, $steady}]"; do
+  for method in fem mpm; do
+    expect "it knows t, $method: $loads" 0 "$talus" run clay_block.yaml --out run --force --quiet --set method=$method --set "loads={$loads}"
+    near 1.2
+  done
+done
+sed 's/^analysis:.*/analysis: {type: static, steps: 1}/' clay_block.yaml >t_in_stage.yaml
+cat >>t_in_stage.yaml <<END
+stages:
+  - {name: first}
+  - name: seeks
+    analysis: {type: factor-of-safety, reduction: {tolerance: 1e-3}}
+    loads: {tractions: [{on: {boundary: top}, value: [0, -1e5], factor: 1 + t, $steady}]}
+END
+expect "it knows t in a stage" 0 "$talus" run t_in_stage.yaml --out run --force --quiet
+awk -F, 'END { exit !($4 > 0.5994 && $4 < 0.6012) }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
+
+# A wall that turns stands still, too: as one whose amplitude stops it (it went on, and pressed the block until nothing failed)
+turns='walls=[{name: w, shape: {half-space: {point: [1.001, 0], normal: [-1, 0]}}, motion: [{rotation: {centre: [1.001, 0], rate: 2e-3}AMPLITUDE}]}]'
+expect "a wall that turns" 0 "$talus" run clay_block.yaml --out run --force --quiet --set "$(echo "$turns" | sed 's/AMPLITUDE//')"
+expect "a wall that stops" 0 "$talus" run clay_block.yaml --out stops --force --quiet \
+  --set "$(echo "$turns" | sed 's/AMPLITUDE/, amplitude: [[0, 1], [1, 1], [1.0000001, 0]]/')"
+tail -n 1 run/history.csv >turns.txt
+tail -n 1 stops/history.csv | awk -F, 'NR == FNR { F = $3; next } { exit !(F > 1.3 && $3 - F < 1e-3 && F - $3 < 1e-3) }' turns.txt - ||
+  fail "$name: $(cat turns.txt) for $(tail -n 1 stops/history.csv)"
+
 finish

@@ -234,4 +234,19 @@ expect "gmm" 2 "$talus" check block.yaml --set method=gmm --set formulation=disp
 says err.txt "method gmm does not raise a load"
 expect "limit of statics" 2 "$talus" check block.yaml --set analysis.type=static
 says err.txt "analysis.limit belongs to"
+# Time ends with the loads that are not raised: formulas that know t rest (this side load went on, and the block bore 9.6), and
+# that of the raised load itself
+side="{name: side, on: {boundary: right}, value: [-2e4, 0], amplitude: [[0, 1], [1, 1]]}"
+knows="$(echo "$side" | sed 's/}$/, factor: t}/')"
+for one in "$side" "$knows"; do
+  expect "beside $one" 0 "$talus" run block.yaml --out run --force --quiet --set 'boundary=[{on: {boundary: bottom}, fix: [y]}, {on: {x: 0}, fix: [x]}]' \
+    --set "loads.tractions=[{name: press, on: {boundary: top}, value: [0, -1e3]}, $one]"
+  near 237.64 # and 2e4 (1 + sin phi) / (1 - sin phi)
+done
+expect "t in the raised load" 0 "$talus" run block.yaml --out run --force --quiet --set analysis.end=2 --set loads.tractions[0].factor=t
+near 94.181
+expect "t in a raised pressure" 0 "$talus" run block.yaml --out run --force --quiet --set analysis.end=2 \
+  --set 'loads={pressures: [{name: press, on: {boundary: top}, value: 1e3, factor: t}]}'
+near 94.181
+
 finish

@@ -99,7 +99,8 @@ static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProbl
     problem.grips = (PetscBool)(guess[k] == GUESS_GRIPPED);
     pressure_guess(m);
     PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
-    materials_step(m->c->n_materials, m->materials, m->time, dt * time_solved(m->scheme), m->scheme->inertia);
+    materials_step(m->c->n_materials, m->materials, case_time(m->c, m->time), dt * time_solved(m->scheme),
+                   m->scheme->inertia);
     PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
     if (report->newton.converged) PetscCall(GoOn(m, dt, report));
     if (report->newton.converged) PetscCall(UnheldJudge(m, &problem, linear, report));

@@ -46,7 +46,7 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
     outside_judge(m, report);
     if (!m->initial.seeking) PetscCall(MeasuresRemember(m, report->dt));
   } else PetscCall(StepStartRestore(m, &start, report));
-  materials_step(m->c->n_materials, m->materials, m->time, 0, m->scheme->inertia);
+  materials_step(m->c->n_materials, m->materials, case_time(m->c, m->time), 0, m->scheme->inertia);
   PetscFunctionReturn(0);
 }
 

@@ -49,7 +49,7 @@ static PetscErrorCode AssembleBody(void *data, const NodalScene *scene, const No
     x[k] = points->real[POINT_X][i];
     X[k] = x[k] - points->real[POINT_U][i];
   }
-  scene->body_force(scene->body_force_context, points->n, X, x, scene->t, b);
+  scene->body_force(scene->body_force_context, points->n, X, x, case_time(scene->c, scene->t), b);
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)

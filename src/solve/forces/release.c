@@ -8,7 +8,7 @@ typedef struct {
 
 PetscReal release_share(const Case *c, PetscReal t)
 {
-  return c->release > 0 ? PetscMax(0, 1 - (t - c->start) / c->release) : 0;
+  return c->release > 0 ? PetscMax(0, 1 - (case_time(c, t) - c->start) / c->release) : 0;
 }
 
 static PetscErrorCode Create(const NodalScene *scene, Diag *diag, void **data)

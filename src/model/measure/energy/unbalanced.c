@@ -46,10 +46,11 @@ static PetscErrorCode BalancedAtStart(Model *m, PetscReal dt, const PetscReal *g
 {
   PetscFunctionBeginUser;
   PetscCall(MaterialsAt(m, m->time));
-  materials_step(m->c->n_materials, m->materials, m->time, 0, m->scheme->inertia);
+  materials_step(m->c->n_materials, m->materials, case_time(m->c, m->time), 0, m->scheme->inertia);
   PetscCall(Balanced(m, g, external, work));
   PetscCall(MaterialsAt(m, m->time + dt));
-  materials_step(m->c->n_materials, m->materials, m->time, dt * time_solved(m->scheme), m->scheme->inertia);
+  materials_step(m->c->n_materials, m->materials, case_time(m->c, m->time), dt * time_solved(m->scheme),
+                 m->scheme->inertia);
   PetscFunctionReturn(0);
 }
 
