@@ -38,10 +38,12 @@ PetscErrorCode WallsDestroy(Walls **walls)
 /* But for rounding. */
 static PetscBool is_later(PetscReal t, PetscReal than) { return t > than * (1 + 1e-9); }
 
-/* A step that ends at `until` still meets the wall, one that ends at `from` does not yet. */
+/* A step that ends at `until` still meets the wall, one that ends at `from` does not yet. In what a search tries no time
+ * passes: there stands what it begins with. */
 PetscBool wall_stands(const Walls *walls, PetscInt k, PetscReal t)
 {
   const WallSpec *w = walls->c->walls + k;
+  if (case_time(walls->c, t) < t) return wall_comes(walls, k, t);
   if (!walls->wall[k].form || w->absent) return PETSC_FALSE;
   if (w->from > 0 && !is_later(t, w->from)) return PETSC_FALSE;
   return !w->has_until || !is_later(t, w->until);
@@ -50,12 +52,14 @@ PetscBool wall_stands(const Walls *walls, PetscInt k, PetscReal t)
 PetscBool wall_comes(const Walls *walls, PetscInt k, PetscReal t)
 {
   const WallSpec *w = walls->c->walls + k;
-  return walls->wall[k].form && !w->absent && !is_later(w->from, t) && (!w->has_until || is_later(w->until, t));
+  const PetscReal now = case_time(walls->c, t);
+  return walls->wall[k].form && !w->absent && !is_later(w->from, now) && (!w->has_until || is_later(w->until, now));
 }
 
 PetscReal walls_until_change(const Walls *walls, PetscReal t)
 {
   PetscReal next = PETSC_MAX_REAL;
+  if (case_seeks(&walls->c->analysis) && t >= walls->c->analysis.end) return next;
   for (const WallSpec *w = walls->c->walls; w < walls->c->walls + walls->c->n_walls; ++w) {
     if (w->absent) continue;
     if (is_later(w->from, t)) next = PetscMin(next, w->from - t);

@@ -19,7 +19,7 @@ typedef struct {
 PetscErrorCode WallsCreate(const Case *c, Diag *diag, Walls **walls);
 PetscErrorCode WallsDestroy(Walls **walls);
 /* Does wall k stand in a step that ends at time t? Up to `until`, and after `from` (from the start, if
- * that is 0). */
+ * that is 0). While something is sought what stands as that begins. */
 PetscBool wall_stands(const Walls *walls, PetscInt k, PetscReal t);
 /* And in one that begins at t? From `from` on, and before `until`. */
 PetscBool wall_comes(const Walls *walls, PetscInt k, PetscReal t);

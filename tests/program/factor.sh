@@ -305,4 +305,25 @@ tail -n 1 run/history.csv >turns.txt
 tail -n 1 stops/history.csv | awk -F, 'NR == FNR { F = $3; next } { exit !(F > 1.3 && $3 - F < 1e-3 && F - $3 < 1e-3) }' turns.txt - ||
   fail "$name: $(cat turns.txt) for $(tail -n 1 stops/history.csv)"
 
+# Walls come and go by the clock: one that goes later than the loads are on stands through the search, one that would come
+# later never does, and what goes or comes just then is gone, or there, when the search begins. They went when the factor was 2.5,
+# and came when it was 1.2. Conditions and windows count by the clock, too.
+beside='walls=[{name: w, shape: {box: {min: [1, -1], max: [2, 2]}}, TIME}]'
+for time in "until: 3.5" "from: 0.5" "from: 1"; do
+  expect "a wall, $time" 0 "$talus" run clay_block.yaml --out run --force --set "$(echo "$beside" | sed "s/TIME/$time/")"
+  says out.txt "factor of safety > 10"
+  lacks err.txt "never stands"
+done
+for time in "from: 2.2" "until: 0.5" "until: 1"; do
+  expect "no wall, $time" 0 "$talus" run clay_block.yaml --out run --force --set "$(echo "$beside" | sed "s/TIME/$time/")"
+  near 1.2
+done
+expect "conditions by the clock" 0 "$talus" run clay_block.yaml --out run --force --set measures.now='{factor_of_safety: factor}' \
+  --set 'analysis.until=[{measure: now, above: 1.15, after: 1.2}]'
+says out.txt "factor of safety = 1.2"
+sed 's/^measures: {/&settles: {displacement: y, of: {tracer: [0.5, 1]}, mean: {window: [0.5, 9]}}, /' clay_block.yaml >mean.yaml
+expect "a window by the clock" 0 "$talus" run mean.yaml --out run --force --quiet
+awk -F, 'NR > 1 && $1 >= 1 { if (!mean) mean = $3; if ($3 != mean) bad = 1 } END { exit bad || mean == 0 || mean == "nan" }' run/history.csv ||
+  fail "$name: $(tail -n 2 run/history.csv)"
+
 finish

@@ -249,4 +249,9 @@ expect "t in a raised pressure" 0 "$talus" run block.yaml --out run --force --qu
   --set 'loads={pressures: [{name: press, on: {boundary: top}, value: 1e3, factor: t}]}'
 near 94.181
 
+# Walls that go later than other loads are on stand through the search (this one went when the load was 1.5)
+expect "a wall that stays" 0 "$talus" run block.yaml --out run --force --quiet --set 'boundary=[{on: {boundary: bottom}, fix: [y]}, {on: {x: 0}, fix: [x]}]' \
+  --set 'walls=[{name: w, shape: {box: {min: [1, -1], max: [2, 2]}}, until: 60}]'
+awk -F, 'END { exit !($4 > 400) }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
+
 finish

@@ -56,7 +56,7 @@ PetscErrorCode UntilLook(Until *u, Model *m)
     const PetscInt index = measure_of(m->c, spec);
     PetscCall(ModelMeasure(m, &m->c->measures[index], index, &value));
     PetscCallMPI(MPI_Bcast(&value, 1, MPIU_REAL, 0, m->comm)); /* all ranks end together */
-    look(u, k, spec, m->time, value);
+    look(u, k, spec, case_time(m->c, m->time), value);
   }
   PetscFunctionReturn(0);
 }

@@ -55,7 +55,7 @@ static PetscErrorCode OverStep(Model *m, const MeasureSpec *s, PetscBool *is)
 
 PetscErrorCode WindowRemember(Model *m, const MeasureSpec *s, MeasureMemory *memory, PetscReal dt, PetscReal value)
 {
-  const PetscReal t = m->time;
+  const PetscReal t = case_time(m->c, m->time); /* what a search tries takes none */
   PetscBool over_step;
 
   PetscFunctionBeginUser;

@@ -130,7 +130,7 @@ static PetscErrorCode RememberFront(Model *m, const MeasureSpec *s, PetscReal dt
   if (s->front == FRONT_SURFACE) PetscCall(MeasureSurface(m, s, 0, &front));
   else PetscCall(MeasureExtent(m, s, 0, &front));
   if (!s->maximum) front = -front;
-  if (front - kept[FRONT] > s->speed * dt) kept[MOVED] = m->time;
+  if (front - kept[FRONT] > s->speed * dt) kept[MOVED] = case_time(m->c, m->time);
   kept[FRONT] = front;
   PetscFunctionReturn(0);
 }

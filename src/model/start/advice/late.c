@@ -29,14 +29,16 @@ static void advise_amplitude(const Model *m, const Amplitude *a, const char *pat
 static void advise_wall(const Model *m, PetscInt k, Diag *diag)
 {
   const WallSpec *wall = m->c->walls + k;
+  const PetscReal end = m->c->analysis.end;
   char path[96];
   for (PetscInt i = 0; i < wall->n_motions; ++i) {
     snprintf(path, sizeof path, "walls[%d].motion[%d].amplitude", (int)k, (int)i);
     advise_amplitude(m, &wall->motions[i].amplitude, path, diag);
   }
-  if (wall->from < m->c->analysis.end) return;
+  /* what is sought begins at the end, and with the walls that come then */
+  if (wall->from < end || (case_seeks(&m->c->analysis) && wall->from <= end)) return;
   snprintf(path, sizeof path, "walls[%d].from", (int)k);
-  diag_warning(diag, path, "the run ends at t = %g s: wall '%s' never stands", (double)m->c->analysis.end, wall->name);
+  diag_warning(diag, path, "the run ends at t = %g s: wall '%s' never stands", (double)end, wall->name);
 }
 
 void advise_late(const Model *m, Diag *diag)
