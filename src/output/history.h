@@ -10,8 +10,8 @@ typedef struct {
 } History;
 
 /* PETSC_ERR_FILE_OPEN (returned plainly, with a reason and nothing to free) if the file is missing,
- * is no history or has a row that is none. A
- * last row that was cut off is left out. Not collective. */
+ * is no history or has a row that is none. A last row that was cut off is left out. Times never fall: rows of a search
+ * in a stage, whose steps are no time, have that of the row behind them. Not collective. */
 PetscErrorCode HistoryRead(const char *path, History *history, char reason[256]);
 PetscErrorCode HistoryFree(History *history);
 /* Column of that name, -1 if there is none. */

@@ -113,6 +113,18 @@ static PetscErrorCode ReadAll(FILE *in, History *history, char reason[256])
   PetscFunctionReturn(0);
 }
 
+/* A search counts its tries from its end on, and the stage behind it goes on from there: its rows are of the time to
+ * which the run comes back. */
+static void let_time_rise(History *history)
+{
+  PetscReal next = PETSC_MAX_REAL;
+  for (PetscInt row = history->n_rows - 1; row >= 0; --row) {
+    PetscReal *time = history->values + (size_t)row * (size_t)history->n_columns;
+    if (*time > next) *time = next;
+    else next = *time;
+  }
+}
+
 PetscErrorCode HistoryRead(const char *path, History *history, char reason[256])
 {
   PetscFunctionBeginUser;
@@ -125,7 +137,10 @@ PetscErrorCode HistoryRead(const char *path, History *history, char reason[256])
   }
   PetscCall(ReadAll(in, history, reason));
   fclose(in);
-  if (!reason[0]) PetscFunctionReturn(0);
+  if (!reason[0]) {
+    let_time_rise(history);
+    PetscFunctionReturn(0);
+  }
   PetscCall(HistoryFree(history));
   PetscFunctionReturn(PETSC_ERR_FILE_OPEN);
 }

@@ -56,7 +56,7 @@ void extension_from_checkpoint(const Run *r, const Extension *e, Diag *diag)
   if (r->whole->n_stages) {
     /* others begin where one ends */
     if (r->stage + 1 == r->whole->n_stages && time >= r->c->analysis.end * (1 - 1e-12) &&
-        r->c->analysis.type != ANALYSIS_FACTOR)
+        !case_seeks(&r->c->analysis)) /* which goes on beyond it */
       diag_warning(diag, NULL, "the run in '%s' is complete at t = %g s: there is nothing left to do",
                    run_dir_path(r->dir), (double)time);
     return;

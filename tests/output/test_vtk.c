@@ -273,6 +273,9 @@ static void test_series(void **state)
   CheckSeries(folder, 2, (PetscReal[]){0, 0.1});
   Append(folder, NULL, 0.1);
   CheckSeries(folder, 1, (PetscReal[]){0});
+  Append(folder, "points_000001.hdf", 3.4); /* of a search, and of the stage behind it */
+  Append(folder, "points_000002.hdf", 2);
+  CheckSeries(folder, 3, (PetscReal[]){0, 3.4, 2});
   TestRemove(folder);
 }
 

@@ -326,4 +326,37 @@ expect "a window by the clock" 0 "$talus" run mean.yaml --out run --force --quie
 awk -F, 'NR > 1 && $1 >= 1 { if (!mean) mean = $3; if ($3 != mean) bad = 1 } END { exit bad || mean == 0 || mean == "nan" }' run/history.csv ||
   fail "$name: $(tail -n 2 run/history.csv)"
 
+# The stage behind a search goes on from its `end`, whatever factor was found: amplitudes, and walls that move, had gone on by it
+# (loads of 73 and 107 kN for 40). Resumed anywhere it is the same; states, their pictures, and comparisons bear times that fall.
+sed 's/^analysis:.*/analysis: {type: static, steps: 1}/; s/value: \[0, -1e5\]/value: [0, -1e4], amplitude: [[0, 1], [10, 11]]/; s/^measures: {/&R: {reaction: y, of: {boundary: 0}}, W: {wall_force: x, of: {wall: w}}, /' \
+  clay_block.yaml >behind.yaml
+cat >>behind.yaml <<'END'
+walls: [{name: w, shape: {box: {min: [1.035, -1], max: [2, 2]}}, motion: [{velocity: {x: -0.01}}]}]
+output: {every: end}
+checkpoint: {steps: 1, keep: 99}
+stages:
+  - {name: before}
+  - {name: seeks, analysis: {type: factor-of-safety, reduction: {step: 0.5, tolerance: 0.01}}}
+  - {name: after, analysis: {type: static, steps: 2}}
+END
+for cohesion in 50e3 100e3; do
+  expect "a stage behind it, $cohesion" 0 "$talus" run behind.yaml --out behind$cohesion --force --quiet --set materials.soil.cohesion=$cohesion
+  says behind$cohesion/stages.csv "3,2,after"
+  awk -F, 'END { exit !($1 == 3 && $4 > 39.999e3 && $4 < 40.001e3 && $5 == 0) }' behind$cohesion/history.csv || fail "$name: $(tail -n 1 behind$cohesion/history.csv)"
+  awk -F, '$3 == 2 { F = $1 - 2 } END { exit !(F > 1) }' behind$cohesion/history.csv || fail "$name: the search's own times are not those of its factors"
+done
+grep -o 'points_0[0-9]*' behind50e3/points.hdf.series | tr '\n' ' ' >out.txt
+says out.txt "points_000000 points_000001 points_000002"
+expect "compared" 0 "$talus" compare behind50e3 behind100e3 --measure R --tolerance 1e-6 --out compared
+expect "drawn" 0 "$talus" plot behind50e3 --time all --out drawn.svg
+says drawn.svg "seeks" "after, t = 3 s"
+for left in 3 2 5; do
+  cp -r behind50e3 again
+  ls again/checkpoint_*.h5 | sed -n "$left,\$p" | xargs rm
+  rm again/timings.txt
+  expect "resumed with $left" 0 "$talus" run --resume again --quiet
+  for file in history.csv stages.csv factor.csv points.hdf.series; do cmp -s behind50e3/$file again/$file || fail "$name: $file differs"; done
+  rm -r again
+done
+
 finish

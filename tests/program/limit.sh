@@ -254,4 +254,14 @@ expect "a wall that stays" 0 "$talus" run block.yaml --out run --force --quiet -
   --set 'walls=[{name: w, shape: {box: {min: [1, -1], max: [2, 2]}}, until: 60}]'
 awk -F, 'END { exit !($4 > 400) }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
 
+# A search in the last stage that goes on is not said to be complete
+sed 's/^  - {name: after.*//; s/^  - {name: seeks/  - {name: before}\n&/' after.yaml >last.yaml
+expect "a search in the last stage" 0 "$talus" run last.yaml --out last --quiet
+ls last/checkpoint_*.h5 | tail -n 2 | xargs rm
+cp last/history.csv whole_last.csv
+rm last/timings.txt
+expect "a search in the last stage, resumed" 0 "$talus" run --resume last --quiet
+lacks err.txt "there is nothing left to do"
+cmp -s whole_last.csv last/history.csv || fail "$name: history.csv differs"
+
 finish

@@ -270,6 +270,7 @@ PetscErrorCode ModelSucceed(const Case *stage, Diag *diag, Model **model, Imbala
   const PetscBool goes_on = accelerations_go_on(stage, before->c);
 
   PetscFunctionBeginUser;
+  before->time = case_time(before->c, before->time); /* a search over, clocks go on from where they stood */
   PetscCall(TablesCreate(&tables));
   if (goes_on) PetscCall(JumpFrom(before, tables));
   PetscCall(ModelToTables(before, tables));

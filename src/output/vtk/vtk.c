@@ -70,7 +70,7 @@ static PetscErrorCode ImageCreate(MPI_Comm comm, PetscMPIInt rank, const VtkData
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, 2, MPI_INT, MPI_MAX, comm));
   image->has_cells = has[0] != 0;
   image->has_id = has[1] != 0;
-  PetscCall(PetscMalloc1((size_t)(10 + data->n_point_fields + data->n_cell_fields), &image->slabs));
+  PetscCall(PetscMalloc1((size_t)(11 + data->n_point_fields + data->n_cell_fields), &image->slabs));
   PetscCall(MakeTopology(image, data));
   add_geometry(image, data);
   for (PetscInt i = 0; i < data->n_point_fields; ++i) {
@@ -84,6 +84,7 @@ static PetscErrorCode ImageCreate(MPI_Comm comm, PetscMPIInt rank, const VtkData
     add_slab(image, "CellData/", field->name, field->unit, COLUMN_REAL, field->components, image->n_cells, field->data);
   }
   add_slab(image, "FieldData/", "Time", "s", COLUMN_REAL, 1, rank ? 0 : 1, &data->time);
+  if (data->stage) add_slab(image, "FieldData/", "Stage", NULL, COLUMN_INT64, 1, rank ? 0 : 1, &data->stage);
   if (data->n_frames)
     add_slab(image, "FieldData/", "WallFrames", NULL, COLUMN_REAL, 12, rank ? 0 : data->n_frames, data->frames);
   PetscFunctionReturn(0);

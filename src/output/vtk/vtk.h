@@ -26,6 +26,7 @@ typedef struct {
   const VtkField *point_fields, *cell_fields;
   const PetscInt64 *point_id; /* field "id", or NULL */
   PetscReal time;             /* s, kept as an attribute too */
+  PetscInt64 stage;           /* of the run, from 1 on: FieldData/Stage; 0: it has none */
   /* n_frames x 12, of rank 0: where walls with mass are, R (3 x 3) and T of x = R X + T: FieldData/WallFrames */
   PetscInt n_frames;
   const PetscReal *frames;
@@ -40,7 +41,7 @@ PetscErrorCode VtkWrite(MPI_Comm comm, const char *path, const VtkData *data, ch
  * Collective. No file is fine if n = 0. */
 PetscErrorCode VtkSeriesKeep(MPI_Comm comm, const char *folder, const char *name, PetscInt n, PetscBool all,
                              char reason[256]);
-/* Append (or replace from this time on) an entry of DIR/NAME.hdf.series; atomic. Rank 0 writes.
- * Collective. file NULL: only forget the entries from this time on. */
+/* Append (or replace from its number on; without numbers from this time on) an entry of DIR/NAME.hdf.series; atomic.
+ * Rank 0 writes. Collective. file NULL: only forget the entries from this time on. */
 PetscErrorCode VtkSeriesAppend(MPI_Comm comm, const char *folder, const char *name, const char *file, PetscReal time,
                                char reason[256]);

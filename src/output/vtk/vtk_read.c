@@ -307,3 +307,16 @@ PetscBool vtk_read_frames(const VtkFile *file, PetscInt n, PetscReal *frames)
   for (PetscInt i = 0; i < 12 * n && ok; ++i) ok = PetscAbsReal(frames[i]) < 1e30;
   return ok;
 }
+
+PetscInt vtk_read_stage(const VtkFile *file)
+{
+  PetscReal stage = 0;
+  H5E_BEGIN_TRY
+  {
+    if (rows(file, "FieldData/Stage") != 1 ||
+        !dataset_read(file->root, "FieldData/Stage", H5T_NATIVE_DOUBLE, 1, &stage))
+      stage = 0;
+  }
+  H5E_END_TRY
+  return stage >= 1 && stage < 1e6 ? (PetscInt)stage : 0;
+}

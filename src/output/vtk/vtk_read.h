@@ -24,6 +24,8 @@ PetscErrorCode VtkReadCoordinates(VtkFile *file, PetscReal **x, char reason[256]
 /* points x components of one of vtk_read_fields */
 PetscErrorCode VtkReadField(VtkFile *file, const VtkFieldInfo *field, PetscReal **data, char reason[256]);
 
+/* The stage that it was written in, from 1 on; 0: it does not tell. */
+PetscInt vtk_read_stage(const VtkFile *file);
 /* The n frames of walls (12 numbers each) that were written with it; PETSC_FALSE if there are not so many. */
 PetscBool vtk_read_frames(const VtkFile *file, PetscInt n, PetscReal *frames);
 

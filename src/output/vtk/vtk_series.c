@@ -35,17 +35,23 @@ static long state_number(const char *file)
   return number ? strtol(number + 1, NULL, 10) : 0;
 }
 
-/* Entries before `time` (but for the last bits of a sum of steps) of states before number `most`, then the new
- * one. */
+/* Does the entry stand before the new one? States that have a number by that: times of a search lie behind those of the
+ * stage after it. */
+static PetscBool stands_before(const char *name, PetscReal t, const char *file, PetscReal time)
+{
+  if (file && strrchr(file, '_')) return (PetscBool)(state_number(name) < state_number(file));
+  return (PetscBool)(t < time - 1e-12 * PetscAbsReal(time)); /* but for the last bits of a sum of steps */
+}
+
+/* Entries that stand before the new one, of states before number `most`, then it. */
 static PetscInt rewrite(FILE *old, FILE *out, const char *file, PetscReal time, PetscInt most)
 {
-  const PetscReal before = time - 1e-12 * PetscAbsReal(time);
   char line[1024], name[VTK_SERIES_NAME];
   PetscInt kept = 0;
   PetscReal t;
   fputs("{\n  \"file-series-version\": \"1.0\",\n  \"files\": [\n", out);
   while (old && kept < most && fgets(line, sizeof line, old)) {
-    if (!parse_entry(line, name, &t) || !(t < before) || state_number(name) >= most) continue;
+    if (!parse_entry(line, name, &t) || !stands_before(name, t, file, time) || state_number(name) >= most) continue;
     write_entry(out, kept == 0, name, t);
     ++kept;
   }

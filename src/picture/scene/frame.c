@@ -150,6 +150,7 @@ PetscErrorCode PlotFrameRead(VtkFile *file, const VtkFieldInfo *field, const Plo
     PetscCall(TakeFirst(file, scene, n, x, f));
     PetscCall(TakeParts(file, scene, n, x, f));
     PetscCall(TakeWalls(file, scene, f));
+    f->stage = vtk_read_stage(file);
     ++scene->n_frames;
     PetscCall(PetscFree(data));
   }

@@ -19,6 +19,7 @@ typedef struct {
   PetscReal *radius; /* n, m */
   char title[256];
   PetscReal time; /* s */
+  PetscInt stage; /* from 1 on; 0: its file does not tell */
   PetscInt n_edges;
   PetscReal *edges; /* n_edges x 4: the grid's lines on the page */
   PetscInt n_triangles;

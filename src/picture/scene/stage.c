@@ -1,10 +1,10 @@
-/* The stage of a run that a time belongs to. */
+/* The stage of a run that a state belongs to. */
 #include "picture/scene/stage.h"
 #include <stdlib.h>
 #include <string.h>
 #include "output/directory/run_dir_files.h"
 
-PetscBool plot_stage_at(const char *run, PetscReal time, char name[64])
+PetscBool plot_stage_at(const char *run, PetscReal time, PetscInt number, char name[64])
 {
   char path[FILE_PATH], line[256];
   snprintf(path, sizeof path, "%s/stages.csv", run);
@@ -15,8 +15,9 @@ PetscBool plot_stage_at(const char *run, PetscReal time, char name[64])
     char *end = NULL;
     line[strcspn(line, "\n")] = '\0';
     const double from = called ? strtod(begins + 1, &end) : 0;
-    if (!called || end == begins + 1) continue;      /* the header */
-    if (name[0] && time <= from * (1 + 1e-9)) break; /* a state at the end of a stage is of that stage */
+    if (!called || end == begins + 1) continue; /* the header */
+    if (number && strtol(line, NULL, 10) > number) break;
+    if (!number && name[0] && time <= from * (1 + 1e-9)) break; /* a state at the end of a stage is of that stage */
     snprintf(name, 64, "%.63s", called + 1);
   }
   if (in) fclose(in);

@@ -205,6 +205,7 @@ static PetscErrorCode WritePoints(Output *o, Model *m, PetscBool *ok, char reaso
                        .point_fields = fields,
                        .point_id = m->points->id,
                        .time = m->time,
+                       .stage = m->c->staged ? m->c->stage + 1 : 0,
                        .n_frames = n_frames,
                        .frames = frames};
   PetscCall(OutputState(o, m->comm, "points", &vtk, &o->seals[o->count].points, ok, reason));
