@@ -12,8 +12,9 @@ static PetscErrorCode TellStress(const Model *m, RunDir *dir)
   PetscFunctionBeginUser;
   PetscCall(ModelCountPoints(m, &points));
   if (m->initial.beyond > 0)
-    PetscCall(RunDirLog(dir, "initial stress = beyond the strength at %d of %d points, and brought back to it there",
-                        (int)m->initial.beyond, (int)points));
+    PetscCall(RunDirLog(dir, "initial stress = beyond the strength at %d of %d points, and brought back to it there%s",
+                        (int)m->initial.beyond, (int)points,
+                        m->c->analysis.type == ANALYSIS_FACTOR ? " once it yields" : ""));
   else PetscCall(RunDirLog(dir, "initial stress = within the strength everywhere"));
   PetscFunctionReturn(0);
 }

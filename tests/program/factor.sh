@@ -359,4 +359,25 @@ for left in 3 2 5; do
   rm -r again
 done
 
+# Given stresses beyond the strength of the case are counted as in statics, although nothing yields yet (0 of 64 points)
+cat >given.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [1, 4]}, size: 0.5}
+bodies: [{name: s, shape: {box: {min: [0, 0], max: [1, 4]}}, points_per_cell: 4, material: m, k0: 3}]
+materials: {m: {law: mohr-coulomb, density: 2000, young: 1e8, poisson: 0.3, friction_angle: 20, cohesion: 1e4}}
+boundary: [{on: {boundary: bottom}, fix: [x, y]}, {on: {boundary: left}, fix: [x]}, {on: {boundary: right}, fix: [x]}]
+loads: {gravity: [0, -10]}
+measures: {beyond: {initial: beyond}}
+END
+for set in bodies[0].k0=3 bodies[0].k0=0.1 bodies[0].k0=0.5 formulation=mixed; do
+  expect "beyond its strength in statics, $set" 0 "$talus" run given.yaml --out still --force --quiet --set $set
+  expect "beyond its strength, $set" 0 "$talus" run given.yaml --out run --force --set $set --set 'analysis={type: factor-of-safety, reduction: {most: 1.1}}'
+  awk -F, 'NR == FNR { n = $3; next } FNR == 2 && $3 != n { print n " but " $3; exit 1 }' still/history.csv run/history.csv || fail "$name"
+done
+expect "beyond its strength" 0 "$talus" run given.yaml --out run --force --set 'analysis={type: factor-of-safety, reduction: {most: 1.1}}'
+awk -F, 'END { exit !($3 > 0 && $3 < 64) }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
+says out.txt "points, and brought back to it there once it yields"
+
 finish

@@ -132,13 +132,29 @@ static PetscErrorCode CheckSurface(const Model *m, const PetscReal *highest, Dia
   PetscFunctionReturn(0);
 }
 
+/* Materials of a search for a factor of safety, which do not yield as it begins, with the strength that the case gives
+ * them; else NULL. */
+static PetscErrorCode WholeStrength(const Model *m, Material **whole)
+{
+  PetscFunctionBeginUser;
+  *whole = NULL;
+  if (m->c->analysis.type != ANALYSIS_FACTOR) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(m->c->n_materials, whole));
+  PetscCall(PetscArraycpy(*whole, m->materials, m->c->n_materials));
+  for (PetscInt i = 0; i < m->c->n_materials; ++i)
+    if ((*whole)[i].law->reduce) material_reduce(&(*whole)[i], 1);
+  PetscFunctionReturn(0);
+}
+
 /* All points of bodies that have one; *failed: a body whose law cannot carry it. */
 static PetscErrorCode StressPoints(Model *m, const Upwards *u, Overburden *overburden, PetscReal *highest,
                                    PetscInt *failed)
 {
   PetscReal sigma[6], above, top;
+  Material *whole;
 
   PetscFunctionBeginUser;
+  PetscCall(WholeStrength(m, &whole));
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscInt b = m->points->body[p];
     const BodySpec *body = &m->c->bodies[b];
@@ -150,12 +166,13 @@ static PetscErrorCode StressPoints(Model *m, const Upwards *u, Overburden *overb
     for (PetscInt d = 0; d < m->dim; ++d) place.depth -= u->up[d] * x[d];
     if (body->has_k0) geostatic(u, body->k0, above, sigma);
     else PetscCall(StressOfFormulas(body, &place, sigma));
-    switch (stress_point(m->points, p, &m->materials[m->points->material[p]], sigma)) {
-    case STRESS_CARRIED: break;
-    case STRESS_BEYOND: m->initial.beyond += 1; break;
-    case STRESS_REFUSED: *failed = b;
-    }
+    const PetscInt i = m->points->material[p];
+    const StressOutcome outcome = stress_point(m->points, p, &m->materials[i], sigma);
+    if (outcome == STRESS_REFUSED) *failed = b;
+    else if (outcome == STRESS_BEYOND || (whole && stress_is_beyond(m->points, p, &whole[i], sigma)))
+      m->initial.beyond += 1;
   }
+  PetscCall(PetscFree(whole));
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &m->initial.beyond, 1, MPIU_REAL, MPI_SUM, m->comm));
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, failed, 1, MPIU_INT, MPI_MAX, m->comm));
   PetscFunctionReturn(0);

@@ -94,6 +94,18 @@ void point_compress(Points *points, PetscInt p, PetscReal before, PetscReal J)
   point_lengthen(points, p, PetscPowReal(before / J, 1.0 / 3.0));
 }
 
+static void deviator_of(const PetscReal sigma[6], PetscReal deviator[6])
+{
+  const PetscReal mean = (sigma[0] + sigma[1] + sigma[2]) / 3;
+  for (int k = 0; k < 6; ++k) deviator[k] = sigma[k] - (k < 3 ? mean : 0);
+}
+
+/* Is pressure an unknown that no volume goes with? */
+static PetscBool is_incompressible(const Points *points, const Material *material)
+{
+  return (PetscBool)(points->components[POINT_PRESSURE] && material->compliance == 0);
+}
+
 /* Shape alone carries the deviator, the pressure the mean: nothing is compressed. */
 static StressOutcome stress_incompressible(Points *points, PetscInt p, const Material *material,
                                            const PetscReal sigma[6])
@@ -101,7 +113,7 @@ static StressOutcome stress_incompressible(Points *points, PetscInt p, const Mat
   const PetscReal mean = (sigma[0] + sigma[1] + sigma[2]) / 3;
   Carried c = {.state = point_real(points, POINT_STATE, p)};
   PetscReal deviator[6];
-  for (int k = 0; k < 6; ++k) deviator[k] = sigma[k] - (k < 3 ? mean : 0);
+  deviator_of(sigma, deviator);
   points->real[POINT_PRESSURE][p] = mean;
   const StressOutcome outcome = carry(material, PETSC_TRUE, deviator, &c);
   for (int k = 0; k < 3; ++k) c.tau[k] += mean;
@@ -115,12 +127,21 @@ StressOutcome stress_point(Points *points, PetscInt p, const Material *material,
   for (int k = 0; k < 6; ++k)
     if (PetscIsInfOrNanReal(sigma[k])) return STRESS_REFUSED;
   if (!material->law->initial_stress) return STRESS_REFUSED;
-  if (points->components[POINT_PRESSURE] && material->compliance == 0)
-    return stress_incompressible(points, p, material, sigma);
+  if (is_incompressible(points, material)) return stress_incompressible(points, p, material, sigma);
   const StressOutcome outcome = carry(material, PETSC_FALSE, sigma, &c);
   if (outcome == STRESS_REFUSED || product(sigma, sigma) == 0) return outcome;
   if (points->components[POINT_PRESSURE]) points->real[POINT_PRESSURE][p] = pressure_of_state(material, c.state, c.tau);
   point_set_tau(points, p, c.tau);
   point_compress(points, p, 1, c.J);
   return outcome;
+}
+
+PetscBool stress_is_beyond(const Points *points, PetscInt p, const Material *material, const PetscReal sigma[6])
+{
+  const PetscBool shape = is_incompressible(points, material);
+  PetscReal state[LAW_MAX_STATE], deviator[6];
+  Carried c = {.state = state};
+  memcpy(state, point_real(points, POINT_STATE, p), sizeof(PetscReal) * (size_t)material->law->n_state);
+  deviator_of(sigma, deviator);
+  return (PetscBool)!is_carried(material, shape, shape ? deviator : sigma, &c);
 }
