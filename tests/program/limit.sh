@@ -264,4 +264,27 @@ expect "a search in the last stage, resumed" 0 "$talus" run --resume last --quie
 lacks err.txt "there is nothing left to do"
 cmp -s whole_last.csv last/history.csv || fail "$name: history.csv differs"
 
+# An amplitude of what is raised has no effect, and says so where it stands; not one of 1, nor one that an earlier stage went by
+ramp='amplitude: [[0, 0], [1, 2]]'
+raises_nothing_by_it() {
+  says err.txt "is raised from zero to its limit, whatever this says: it has no effect" "$1"
+}
+expect "an amplitude of a raised load" 0 "$talus" run block.yaml --out run --force --quiet --set 'loads.tractions[0].amplitude=[[0, 0], [1, 2]]'
+raises_nothing_by_it 'loads.tractions[0].amplitude='
+near "$bears"
+sed "s/displacement: {y: -0.002}/&, $ramp/" plate.yaml >ramped.yaml
+expect "of a displacement" 0 "$talus" check ramped.yaml --set analysis.limit='{raise: plate}'
+raises_nothing_by_it "ramped.yaml:11:67"
+sed 's/^walls:.*//' block.yaml >ramped.yaml
+echo "walls: [{name: lid, shape: {half-space: {point: [0, 1], normal: [0, -1]}}, motion: [{displacement: {y: -0.002}, $ramp}]}]" >>ramped.yaml
+expect "of a wall" 0 "$talus" check ramped.yaml --set analysis.limit.raise=lid
+raises_nothing_by_it "ramped.yaml:16:113"
+expect "of gravity" 0 "$talus" check block.yaml --set analysis.limit.raise=gravity --set 'loads={gravity: [0, -10], gravity_amplitude: [[0, 0], [1, 1]]}'
+raises_nothing_by_it "gravity_amplitude"
+expect "an amplitude of 1" 0 "$talus" check block.yaml --set 'loads.tractions[0].amplitude=[[0, 1], [1, 1]]'
+lacks err.txt "it has no effect"
+expect "an amplitude of another stage" 0 "$talus" check after.yaml --set "stages=[{name: a}, {name: seeks, analysis: {type: limit-load, limit: {raise: press}}}]" \
+  --set 'loads.tractions[0].amplitude=[[0, 0], [1, 1]]'
+lacks err.txt "it has no effect"
+
 finish

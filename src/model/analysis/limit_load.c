@@ -14,12 +14,43 @@ static PetscBool follows(const Case *c)
   return limit->kind == RAISE_LOAD && c->loads[limit->index].kind == LOAD_PRESSURE;
 }
 
+/* The amplitude of what is raised, and where it stands in the case. */
+static const Amplitude *raised_amplitude(const Case *c, char path[96])
+{
+  const LimitSpec *limit = &c->analysis.limit;
+  char load[64];
+  switch (limit->kind) {
+  case RAISE_GRAVITY: snprintf(path, 96, "loads.gravity_amplitude"); return &c->gravity_amplitude;
+  case RAISE_LOAD: snprintf(path, 96, "%s.amplitude", case_load_path(c, limit->index, load)); break;
+  case RAISE_BOUNDARY: snprintf(path, 96, "boundary[%d].amplitude", (int)limit->index); break;
+  case RAISE_WALL: snprintf(path, 96, "walls[%d].motion[0].amplitude", (int)limit->index); break;
+  case RAISE_NOTHING: return NULL;
+  }
+  return limit->kind == RAISE_LOAD ? &c->loads[limit->index].amplitude : &case_raised_motion(c)->amplitude;
+}
+
+/* What is raised has a factor of its own. An amplitude that an earlier stage goes by, or that is 1, misleads nobody. */
+static void warn_of_amplitude(const Case *c, Diag *diag)
+{
+  char path[96] = "";
+  const Amplitude *a = raised_amplitude(c, path);
+  PetscBool other = PETSC_FALSE;
+  for (PetscInt i = 0; a && i < a->n; ++i) other |= a->value[i] != 1;
+  if (!other || a->since < c->stage) return;
+  diag_warning(diag, path, "'%s' is raised from zero to its limit, whatever this says: it has no effect",
+               c->analysis.limit.raise);
+  diag_hint(diag,
+            "the limit is told as a factor of the load, or as the force along the displacement, as given without "
+            "an amplitude: leave it out");
+}
+
 void raised_start(Model *m, Diag *diag)
 {
   const Case *c = m->c;
   const LimitSpec *limit = &c->analysis.limit;
   m->raised = (Raised){.value = NAN};
   if (c->analysis.type != ANALYSIS_LIMIT) return;
+  warn_of_amplitude(c, diag);
   if (m->method->clouds)
     diag_error(diag, "analysis.type", "method %s does not raise a load to its limit: mpm and fem do", m->method->name);
   if (limit->kind == RAISE_GRAVITY && case_has_stress(c))

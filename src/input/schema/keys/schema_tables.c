@@ -85,7 +85,7 @@ static const SchemaTable reduction = {.name = "reduction",
 static const SchemaEntry limit_entries[] = {
   KEY("raise", TEXT, NULL,
       "what is raised from zero when all other loads are on: `gravity`, the name of a load, or of an entry of "
-      "boundary or a wall with a `displacement`, whose force is the load then",
+      "boundary or a wall with a `displacement`, whose force is the load then; an `amplitude` of its own has no effect",
       REQUIRED, AT(LimitSpec, raise)),
   KEY("step", NUMBER, NULL, "the first increment: of the load's factor while it is small, or of the displacement's",
       .fallback = "0.02", ABOVE(0), AT(LimitSpec, step)),
