@@ -380,4 +380,10 @@ expect "beyond its strength" 0 "$talus" run given.yaml --out run --force --set '
 awk -F, 'END { exit !($3 > 0 && $3 < 64) }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
 says out.txt "points, and brought back to it there once it yields"
 
+# The title of a picture tells the factor, whenever the loads were on
+expect "loads on at 3 s" 0 "$talus" run clay_block.yaml --out run --force --quiet --set analysis.end=3
+near 1.2
+expect "its picture" 0 "$talus" plot run --time last --out last.svg
+says last.svg "F = 1.2"
+
 finish

@@ -243,12 +243,13 @@ static PetscErrorCode FindKind(const PlotOptions *options, Diag *diag, PlotScene
   PetscFunctionReturn(0);
 }
 
-/* When it was; where strength is divided the factor, which goes on from the time of the loads, 1. */
-static void say_when(const PlotOptions *options, PetscReal time, PetscInt number, char text[64])
+/* When it was; where strength is divided the factor, which goes on from the end of the loads. */
+static void say_when(const PlotOptions *options, const PlotScene *scene, PetscReal time, PetscInt number, char text[64])
 {
+  const PetscReal end = scene->walled ? scene->walled->analysis.end : 1;
   char stage[64];
   if (plot_stage_at(options->run, time, number, stage)) snprintf(text, 64, "%.40s, t = %.6g s", stage, (double)time);
-  else if (time > 1 && file_exists(options->run, "factor.csv")) snprintf(text, 64, "F = %.5g", (double)(time - 1));
+  else if (time > end && file_exists(options->run, "factor.csv")) snprintf(text, 64, "F = %.5g", (double)(time - end));
   else snprintf(text, 64, "t = %.6g s", (double)time);
 }
 
@@ -292,7 +293,7 @@ PetscErrorCode PlotSceneFill(const PlotOptions *options, PetscInt n, const VtkSt
     PetscCall(AddFrame(options, &states[k], subject, scene, diag));
     char *title = scene->frames[k].title, when[64];
     scene->frames[k].time = states[k].time;
-    say_when(options, states[k].time, scene->frames[k].stage, when);
+    say_when(options, scene, states[k].time, scene->frames[k].stage, when);
     if (n == 1) snprintf(title, 256, "%.160s at %s", subject->words, when);
     else snprintf(title, 256, "%s", when);
   }
