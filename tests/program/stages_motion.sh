@@ -475,4 +475,27 @@ for method in mpm fem gmm; do
   sed -n 2p goes/history.csv | awk -F, '{ exit !($3 ^ 2 < 1e-12) }' || fail "$name: $(sed -n 2p goes/history.csv)"
 done
 
+# Loads that the material carries go on out of another run as they do in a stage.
+sed '/^loads/d; /^measures/d' rests.yaml >loaded.yaml
+cat >>loaded.yaml <<'END'
+stabilisation: {follow: 0.02} # a dynamic case without stages has another one
+loads: {tractions: [{on: {body: block, y: 1}, value: [2000, -3000]}], pressures: [{on: {body: block, x: 1.5}, value: 1000}], points: [{at: [0.8, 0.4], force: [100, 0]}]}
+measures: {x: {reaction: x, of: {boundary: floor}}, y: {reaction: y, of: {boundary: floor}}}
+END
+for method in mpm fem gmm; do
+  expect "a block under loads, $method" 0 "$talus" run loaded.yaml --force --quiet --out before --set method=$method
+  for next in "{type: static, steps: 2}" "{type: dynamic, step: 0.01, end: 0.02}"; do
+    turn
+    expect "more of it in a stage, $method, $next" 0 "$talus" run loaded.yaml --force --quiet --out stage --set method=$method --set "stages=[{name: a}, {name: b, analysis: $next}]"
+    expect "out of a run, $method, $next on $ranks" 0 on_ranks $ranks "$talus" run loaded.yaml --force --quiet --out goes --set method=$method --set "analysis=$next" --set initial.run=before
+    for row in 2 4; do
+      sed -n ${row}p goes/history.csv | awk -F, -v is="$(sed -n $((row + 2))p stage/history.csv | cut -d, -f4,5)" '{ split(is, a, ","); exit !(($3 / a[1] - 1) ^ 2 < 1e-10 && ($4 / a[2] - 1) ^ 2 < 1e-10) }' ||
+        fail "$name: $(cat goes/history.csv stage/history.csv)"
+    done
+  done
+done
+expect "a block under loads" 0 "$talus" run loaded.yaml --force --quiet --out before
+expect "another grid" 2 "$talus" run loaded.yaml --force --out goes --set initial.run=before --set grid.size=0.2
+says err.txt "walls, interfaces or loads on bodies it needs the same one"
+
 finish

@@ -70,6 +70,13 @@ static PetscBool is_carried(const Case *c, const LoadSpec *load)
   return (PetscBool)(load->kind != LOAD_TRACTION || load->on.body || (method && method->clouds));
 }
 
+PetscBool loads_are_carried(const Case *c)
+{
+  for (PetscInt k = 0; k < c->n_loads; ++k)
+    if (is_carried(c, c->loads + k)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* The component of a value that is largest. */
 static PetscInt largest_of(const LoadSpec *load)
 {
@@ -116,7 +123,7 @@ static void check_load(const Case *c, const Case *from, PetscInt k, const LoadSp
   }
 }
 
-PetscErrorCode LoadsCheck(const Case *c, const Case *from, PetscBool next, Diag *diag)
+PetscErrorCode LoadsCheck(const Case *c, const Case *from, Diag *diag)
 {
   PetscInt *now, *was;
 
@@ -124,7 +131,7 @@ PetscErrorCode LoadsCheck(const Case *c, const Case *from, PetscBool next, Diag 
   PetscCall(PetscMalloc2(from->n_loads, &now, c->n_loads, &was));
   map_loads(c, from, now, was);
   for (PetscInt k = 0; k < c->n_loads; ++k)
-    if (is_carried(c, c->loads + k)) check_load(c, from, k, next && was[k] >= 0 ? from->loads + was[k] : NULL, diag);
+    if (is_carried(c, c->loads + k)) check_load(c, from, k, was[k] >= 0 ? from->loads + was[k] : NULL, diag);
   PetscCall(PetscFree2(now, was));
   PetscFunctionReturn(0);
 }
@@ -145,11 +152,10 @@ PetscErrorCode TakeCarriers(Model *m, const Tables *tables, const Case *from, ch
   const Case *c = m->c;
   Points *carriers = m->loads->carriers, *begun;
   PetscInt *now, *was;
-  PetscBool *begins, any = PETSC_FALSE;
+  PetscBool *begins;
 
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < c->n_loads; ++k) any |= is_carried(c, c->loads + k);
-  if (!any) PetscFunctionReturn(0);
+  if (!loads_are_carried(c)) PetscFunctionReturn(0);
   PetscCall(PetscMalloc2(from->n_loads, &now, c->n_loads, &was));
   map_loads(c, from, now, was);
   const PointsChange change = {.n_bodies = from->n_loads, .n_materials = PetscMax(1, from->n_materials), .body = now};

@@ -278,7 +278,7 @@ PetscErrorCode RenameCheck(const Case *c, const Case *from, PetscBool next, Diag
   const Method *method = method_find(c->method);
 
   PetscFunctionBeginUser;
-  PetscCall(LoadsCheck(c, from, next, diag));
+  PetscCall(LoadsCheck(c, from, diag));
   check_starts(c, from, diag);
   if (method && method->clouds) clouds_check(c, from, diag);
   if (next) check_walls(c, from, diag);

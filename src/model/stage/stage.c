@@ -80,14 +80,42 @@ static PetscErrorCode TakeMesh(Model *m, const Tables *tables, const Case *from,
   PetscFunctionReturn(0);
 }
 
+/* What the boundary bears in the state that the case would have begun with. */
+static PetscErrorCode ForgetReactions(Model *m)
+{
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(m->nodes->held, dofs));
+  PetscCall(PetscArrayzero(m->nodes->rate, dofs));
+  PetscCall(PetscArrayzero(m->nodes->reaction, dofs));
+  PetscFunctionReturn(0);
+}
+
+/* What nodes of a box know of the boundary's forces in another run: where its tables do not tell, nothing. */
+static PetscErrorCode TakeReactions(Model *m, const Tables *tables)
+{
+  char unheard[256] = "";
+
+  PetscFunctionBeginUser;
+  PetscCall(NodalFieldsFromTables(m->nodes, PETSC_FALSE, tables, unheard));
+  PetscCall(ReasonShare(m->comm, unheard));
+  if (unheard[0]) PetscCall(ForgetReactions(m));
+  PetscFunctionReturn(0);
+}
+
 /* Nodes of a cloud came with its parts; home: to the ranks that had them. */
 static PetscErrorCode TakeNodes(Model *m, const Tables *tables, const Case *from, PetscBool next, PetscBool home,
                                 Diag *diag, char reason[256])
 {
+  char other[256] = "";
+
   PetscFunctionBeginUser;
+  state_check_grid(m, tables, other);
   if (m->method->clouds) PetscCall(StateCloudSettle(m, tables, home, reason));
   else if (!m->method->restores_grid) PetscCall(TakeMesh(m, tables, from, diag, reason));
   else if (next) PetscCall(NodalFieldsFromTables(m->nodes, PETSC_FALSE, tables, reason));
+  else if (!other[0]) PetscCall(TakeReactions(m, tables));
   m->guess = (Guess){0};
   if (next && !reason[0]) PetscCall(ForcesFromTables(m, tables, reason));
   PetscFunctionReturn(0);
@@ -143,18 +171,6 @@ static PetscBool meets_who_comes(const Case *c, const Case *from, const Interfac
   return (PetscBool)(body_comes(c, from, a) || body_comes(c, from, b));
 }
 
-/* What the boundary bears in the state that the case would have begun with. */
-static PetscErrorCode ForgetReactions(Model *m)
-{
-  const PetscInt dofs = m->grid->n_nodes * m->dim;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(m->nodes->held, dofs));
-  PetscCall(PetscArrayzero(m->nodes->rate, dofs));
-  PetscCall(PetscArrayzero(m->nodes->reaction, dofs));
-  PetscFunctionReturn(0);
-}
-
 /* All that the tables give; reason where they make no sense. */
 static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool next, PetscBool onto, Diag *diag,
                            char reason[256])
@@ -172,7 +188,7 @@ static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool
   if (!reason[0] && next) PetscCall(StateGoOn(m, tables, reason));
   if (!reason[0]) PetscCall(TakePoints(m, tables, from, onto, diag, reason));
   if (!reason[0] && next) PetscCall(TakeTracers(m, tables, from, reason));
-  if (!reason[0] && next) PetscCall(TakeCarriers(m, tables, from, reason));
+  if (!reason[0]) PetscCall(TakeCarriers(m, tables, from, reason));
   if (!reason[0]) PetscCall(TakeNodes(m, tables, from, next, home, diag, reason));
   PetscCall(ReasonShare(m->comm, reason));
   if (reason[0] || diag_errors(diag) > errors) PetscFunctionReturn(0);
@@ -205,16 +221,17 @@ static void settle_stress(Model *m)
 static PetscBool takes_another_grid(const Model *m, PetscBool next, Diag *diag)
 {
   const Case *c = m->c;
-  const PetscBool takes = !next && m->method->restores_grid && !m->method->clouds && !c->n_walls && !c->n_interfaces;
-  if (takes) return PETSC_TRUE;
+  const PetscBool tied = (PetscBool)(c->n_walls || c->n_interfaces || loads_are_carried(c));
+  if (!next && m->method->restores_grid && !m->method->clouds && !tied) return PETSC_TRUE;
   diag_error(diag, next ? NULL : "grid", "the grid of the case is not the one of the run%s",
              next                        ? ""
              : !m->method->restores_grid ? ", whose nodes carry the state of fem"
-                                         : ", and with walls or interfaces the state needs the same one");
-  diag_hint(diag, "%s",
-            m->method->restores_grid
-              ? "give the grid of that run; without walls and interfaces mpm takes points onto another one"
-              : "give the grid of that run, or let both be runs of mpm, whose points go onto any grid");
+                                         : ", and with walls, interfaces or loads on bodies it needs the same one");
+  diag_hint(
+    diag, "%s",
+    m->method->restores_grid
+      ? "give the grid of that run; without walls, interfaces and loads on bodies mpm takes points onto another one"
+      : "give the grid of that run, or let both be runs of mpm, whose points go onto any grid");
   return PETSC_FALSE;
 }
 

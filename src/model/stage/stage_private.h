@@ -29,7 +29,9 @@ PetscErrorCode RenameTables(const Model *model, const Case *from, const Tables *
 /* Row k of the table becomes row was[k], n of them; < 0: zeros. NULL: there is no such table. */
 PetscErrorCode PickRows(Table *table, PetscInt n, const PetscInt *was);
 /* loads.c. Loads that the material would have to carry from now on. */
-PetscErrorCode LoadsCheck(const Case *c, const Case *from, PetscBool next, Diag *diag);
+PetscErrorCode LoadsCheck(const Case *c, const Case *from, Diag *diag);
+/* Does the case have loads that go with the material? */
+PetscBool loads_are_carried(const Case *c);
 /* Collective. Carriers of the tables, of loads that are still there. */
 PetscErrorCode TakeCarriers(Model *model, const Tables *tables, const Case *from, char reason[256]);
 PetscErrorCode RenameLoads(const Case *c, const Case *from, Table *ended);

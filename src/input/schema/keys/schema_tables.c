@@ -321,8 +321,8 @@ static const SchemaEntry initial_entries[] = {
   KEY(
     "run", FILE, NULL,
     "or the stresses, places and velocities of another run in this directory, of the same bodies by their names: time, "
-    "displacements and accounts begin anew. Points of mpm go onto any grid, walls and interfaces apart; fem needs the "
-    "same one",
+    "displacements and accounts begin anew. Points of mpm go onto any grid, walls, interfaces and loads on bodies "
+    "apart; fem needs the same one",
     AT(InitialSpec, run)),
   KEY("stage", TEXT, NULL, "of that run: the end of this stage", .note = "the last state", .with = "run",
       AT(InitialSpec, stage)),
