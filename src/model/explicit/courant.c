@@ -17,20 +17,39 @@ typedef struct {
   PetscBool box;  /* are cells rectangles or bricks? */
 } Sides;
 
-/* Of cells cut into triangles or graded: their smallest height. */
-static Sides sides_of(const Model *m)
+/* Of a cell of any shape, 1/m2: n times the sum of the squares of its gradients over four, which for bricks is that of
+ * 1 / h^2. Slanted and pointed cells have more than their sides tell. */
+static PetscReal sum_of_cell(const Grid *grid, PetscInt cell)
+{
+  const CellType type = grid_cell_type(grid, cell);
+  const Cell *kind = grid_cell(grid, cell);
+  PetscReal x[3 * CELL_MAX_NODES], middle[3] = {0, 0, 0}, N[CELL_MAX_NODES], dN[3 * CELL_MAX_NODES], sum = 0;
+  for (PetscInt I = 0; I < kind->nodes; ++I)
+    for (PetscInt d = 0; d < kind->dim; ++d) middle[d] += kind->reference[I][d] / (PetscReal)kind->nodes;
+  grid_cell_x(grid, cell, x);
+  (void)cell_gradients(type, x, middle, N, dN);
+  for (PetscInt i = 0; i < kind->nodes * kind->dim; ++i) sum += dN[i] * dN[i];
+  return 0.25 * (PetscReal)kind->nodes * sum;
+}
+
+static PetscErrorCode FindSides(const Model *m, Sides *sides)
 {
   const GridBox *box = m->grid->box;
-  Sides sides = {.axes = kinematics_is_plane(m->c->kinematics) ? 2 : 3};
-  sides.box = (PetscBool)(box && m->grid->nodes_per_cell == (m->dim == 2 ? 4 : 8));
-  if (!sides.box) return sides.sum = (PetscReal)m->dim / PetscSqr(m->grid->smallest), sides;
-  for (PetscInt d = 0; d < m->dim; ++d) {
-    sides.h[d] = PETSC_MAX_REAL;
+  PetscReal most = 0;
+
+  PetscFunctionBeginUser;
+  *sides = (Sides){.axes = kinematics_is_plane(m->c->kinematics) ? 2 : 3};
+  sides->box = (PetscBool)(box && m->grid->nodes_per_cell == (m->dim == 2 ? 4 : 8));
+  for (PetscInt cell = 0; !sides->box && cell < m->grid->n_cells; ++cell)
+    most = PetscMax(most, sum_of_cell(m->grid, cell));
+  if (!sides->box) PetscCall(MPIU_Allreduce(&most, &sides->sum, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  for (PetscInt d = 0; sides->box && d < m->dim; ++d) {
+    sides->h[d] = PETSC_MAX_REAL;
     for (PetscInt i = 0; i < box->counts[d]; ++i)
-      sides.h[d] = PetscMin(sides.h[d], box->line[d][i + 1] - box->line[d][i]);
-    sides.sum += 1 / PetscSqr(sides.h[d]);
+      sides->h[d] = PetscMin(sides->h[d], box->line[d][i + 1] - box->line[d][i]);
+    sides->sum += 1 / PetscSqr(sides->h[d]);
   }
-  return sides;
+  PetscFunctionReturn(0);
 }
 
 /* The largest sum of a row, 1/s2: of the law as it is now, and not below that of its elasticity. */
@@ -94,10 +113,11 @@ static void tangents(const Model *m, PetscInt first, PetscInt n, PetscReal *tau,
 
 PetscErrorCode ExplicitCritical(const Model *m, PetscReal *critical, PetscReal *crossing, PetscReal *fastest)
 {
-  const Sides sides = sides_of(m);
   PetscReal tau[6 * LAW_BATCH], c[36 * LAW_BATCH], local[3] = {0, 0, 0}, all[3], trace, least;
+  Sides sides;
 
   PetscFunctionBeginUser;
+  PetscCall(FindSides(m, &sides));
   for (PetscInt p = 0, n; p < m->points->n; p += n) {
     n = batch_points(m, p);
     tangents(m, p, n, tau, c);

@@ -128,6 +128,20 @@ KERNEL void move(const int dim, const Model *m, const Explicit *e)
   }
 }
 
+/* Half of the work of loads over the substep that ends, with the forces that they have now: those of its start have had
+ * the other half, so that what varies or turns meanwhile has the mean of both. */
+KERNEL void end_work(const int dim, const Model *m, Explicit *e)
+{
+  PetscReal power = 0;
+  for (PetscInt k = 0; k < e->n_active; ++k) {
+    const PetscInt node = e->active[k];
+    const PetscReal *s = e->sum + node * (1 + 2 * dim), inverse = s[0] > 1e-300 ? 1 / s[0] : 0;
+    if (node >= m->grid->n_owned) continue;
+    for (int d = 0; d < dim; ++d) power += m->nodes->external[node * dim + d] * inverse * s[1 + d];
+  }
+  e->external += 0.5 * e->before * power;
+}
+
 PetscErrorCode NodesMove(Model *m, Explicit *e)
 {
   PetscFunctionBeginUser;
@@ -137,6 +151,8 @@ PetscErrorCode NodesMove(Model *m, Explicit *e)
   PetscCall(AddLoads(m, e));
   PetscCall(SumsGive(m, e));
   if (e->loaded) PetscCall(NodesGive(m, e, m->dim, m->nodes->external));
+  if (e->loaded && m->dim == 2) end_work(2, m, e);
+  if (e->loaded && m->dim == 3) end_work(3, m, e);
   if (m->dim == 2) move(2, m, e);
   else move(3, m, e);
   PetscFunctionReturn(0);
@@ -199,8 +215,8 @@ KERNEL void strain(const int dim, const PetscBool again, Explicit *e)
   }
 }
 
-/* Work of gravity and loads, along the way that points go: of a gravity that changes its mean, as its impulses have
- * it. */
+/* Work of gravity, along the way that points go: of one that changes its mean, as its impulses have it. And half of
+ * that of loads, which have the rest when the substep ends. */
 KERNEL void work(const int dim, const Model *m, Explicit *e)
 {
   PetscReal power = 0, g[3];
@@ -210,7 +226,8 @@ KERNEL void work(const int dim, const Model *m, Explicit *e)
     const PetscInt node = e->active[k];
     if (node >= m->grid->n_owned) continue;
     const PetscReal mass = e->sum[node * (1 + 2 * dim)], *v = explicit_way(e, dim, node);
-    for (int d = 0; d < dim; ++d) power += (mass * g[d] + (e->loaded ? m->nodes->external[node * dim + d] : 0)) * v[d];
+    for (int d = 0; d < dim; ++d)
+      power += (mass * g[d] + (e->loaded ? 0.5 * m->nodes->external[node * dim + d] : 0)) * v[d];
   }
   e->external += e->dt * power;
 }

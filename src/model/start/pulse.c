@@ -95,7 +95,7 @@ PetscErrorCode AdvisePulses(const Model *m, Diag *diag)
   if (!m->scheme->inertia || !(step > 0)) PetscFunctionReturn(0);
   if (c->analysis.type == ANALYSIS_EXPLICIT) {
     PetscCall(ExplicitCritical(m, &critical, &crossing, &fastest));
-    step = PetscMin(step, case_courant(&c->analysis) * critical);
+    step /= PetscCeilReal(step / (case_courant(&c->analysis) * critical)); /* equal substeps */
   }
   const Pace forces = {.first = c->start + (m->scheme->middle ? step / 2 : 0), .step = step};
   advise(m, &c->gravity_amplitude, &forces, PETSC_TRUE, "loads.gravity_amplitude", diag);
