@@ -326,7 +326,7 @@ void advise_jumps(const Model *model, Diag *diag);
 /* The same of names and signs that mislead about which way is down: down.c. */
 void advise_down(const Model *model, Diag *diag);
 /* The same of prescribed nodes that stay while what they move passes them: passing.c. */
-void advise_passing(const Model *model, Diag *diag);
+PetscErrorCode AdvisePassing(const Model *model, Diag *diag);
 /* The same of what would begin after the end: late.c. */
 void advise_late(const Model *model, Diag *diag);
 /* cells.c. Collective. The same of cells whose points do not hold a uniform stress. */

@@ -359,6 +359,11 @@ boundary:
 END
 warned "nodes that stay" "case.yaml:12:18: warning: material is moved by 0.8 cells along x, and the nodes that move it stay where they are" \
   "contact: bonded or stick" --
+for on in '{x: [-1, 0.01]}' '{x: [-0.5, 0.5]}' '{shape: {box: {min: [-1, 0], max: [0.6, 2]}}}'; do
+  warned "the same nodes by $on" "warning: material is moved by 0.8 cells along x, and the nodes that move it stay where they are" -- --set "boundary[2].on=$on"
+done
+warned "what lies in the place altogether" -- --set 'boundary[2].on.x=[-1, 5]' --set 'boundary[0]={on: {boundary: top}, fix: [y]}'
+warned "a place that hardly goes in" "this place has no depth along x" -- --set boundary[2].moves=true --set 'boundary[2].on.x=[-1, 0.1]'
 warned "a small way" -- --set boundary[2].displacement.x=0.04
 warned "fem" -- --set method=fem --set 'grid.box={min: [0, 0], max: [4, 1]}'
 warned "a place that goes along" -- --set boundary[2].moves=true --set boundary[2].on.x='[-0.5, 0.5]'
@@ -368,6 +373,21 @@ expect "a wall for it" 0 "$talus" run case.yaml --out run --force --quiet \
   --set 'walls=[{name: press, shape: {half-space: {point: [0, 0], normal: [1, 0]}}, contact: stick, motion: [{displacement: {x: 0.4}}]}]' \
   --set 'measures={press: {wall_force: x, of: {wall: press}}}'
 awk -v f="$(last 3)" 'BEGIN { exit !(f > 211100 && f < 211122) }' || fail "$name: $(last 3) N" # mu (1 / l - l), l = 0.9
+
+# --- nodes of gmm beside a body that glides along a plane ---
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: gmm
+analysis: {type: static, steps: 2}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [0.5, 0.5]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{on: {x: 0}, fix: [x]}, {on: {y: 0, x: [0, 0.5]}, fix: [y]}]
+loads: {tractions: [{on: {body: b, y: 0.5}, value: [0, 1e4]}]}
+END
+warned "a plane that goes on" "have nodes in their clouds where no body has any, which the boundary holds in some directions and leaves free" \
+  'hint: hold what the body has and no more' --
+warned "a plane that ends with the body" -- --set 'boundary[0].on.y=[0, 0.5]'
 
 # --- what never comes, and numbers of other units ---
 cat >case.yaml <<'END'

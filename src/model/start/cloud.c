@@ -145,39 +145,72 @@ static PetscBool is_held(const Model *m, PetscInt node)
   return PETSC_FALSE;
 }
 
+/* How many points of a body have prescribed nodes of no body in their clouds: and hang on them, or go along the same
+ * boundary that holds the body, where these nodes may move and have nothing that moves them. */
+typedef struct {
+  PetscInt hang, glide;
+} Met;
+
+static PetscBool is_free(const Model *m, PetscInt node)
+{
+  for (PetscInt d = 0; d < m->dim; ++d)
+    if (!m->boundary->fixed[node * m->dim + d] && !frame_of(&m->boundary->frames, node)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+static void meet(const Model *m, PetscInt group, Met *met)
+{
+  const Support *w = m->space->support;
+  PetscBool near = PETSC_FALSE, stands = PETSC_FALSE, loose = PETSC_FALSE;
+  for (PetscInt i = w->node_start[group]; i < w->node_start[group + 1]; ++i) {
+    const PetscBool obstacle = m->grid->cloud->obstacle[w->node[i]] > 0;
+    near |= obstacle;
+    stands |= !obstacle && is_held(m, w->node[i]);
+    loose |= obstacle && is_free(m, w->node[i]);
+  }
+  met->hang += near && !stands;
+  met->glide += stands && loose;
+}
+
 /* Points whose clouds reach prescribed nodes that the body's cells do not touch hang on them
  * without strain, so that to come off takes a force. Where the body stands on prescribed nodes of
  * its own that is as it should be. */
-PetscErrorCode ModelWarnOfObstacles(const Model *m, Diag *diag)
+static void tell_met(const Model *m, PetscInt b, const Met *met, Diag *diag)
 {
-  const Support *w = m->space->support;
-  PetscInt *count;
+  const PetscReal reach = m->c->basis.radius * m->grid->cloud->spacing;
   char path[64];
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(m->c->n_bodies, &count));
-  for (PetscInt p = 0; p < w->n_groups; ++p) {
-    PetscBool near = PETSC_FALSE, stands = PETSC_FALSE;
-    for (PetscInt i = w->node_start[p]; i < w->node_start[p + 1]; ++i) {
-      const PetscBool obstacle = m->grid->cloud->obstacle[w->node[i]] > 0;
-      near |= obstacle;
-      stands |= !obstacle && is_held(m, w->node[i]);
-    }
-    count[m->points->body[p]] += near && !stands;
-  }
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, count, (PetscMPIInt)m->c->n_bodies, MPIU_INT, MPI_SUM, m->comm));
-  for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
-    if (!count[b]) continue;
-    snprintf(path, sizeof path, "bodies[%d]", (int)b);
+  snprintf(path, sizeof path, "bodies[%d]", (int)b);
+  if (met->hang) {
     diag_warning(
       diag, path,
       "%d points of '%s' have prescribed nodes in their clouds which the body does not touch: it sticks to them",
-      (int)count[b], m->c->bodies[b].name);
+      (int)met->hang, m->c->bodies[b].name);
     diag_hint(diag,
               "a body that is to slide or come off meets `walls:` on its surface; of prescribed nodes it must start "
               "farther away than its clouds reach: %g m",
-              (double)(m->c->basis.radius * m->grid->cloud->spacing));
+              (double)reach);
   }
-  PetscCall(PetscFree(count));
+  if (met->glide) {
+    diag_warning(diag, path,
+                 "%d points of '%s' have nodes in their clouds where no body has any, which the boundary holds in some "
+                 "directions and leaves free in others: what moves towards these comes out wrong",
+                 (int)met->glide, m->c->bodies[b].name);
+    diag_hint(diag,
+              "hold what the body has and no more, as by on: {x: 0, y: [0, 1]}, unless it is to come there; nodes "
+              "farther away than %g m do no harm",
+              (double)reach);
+  }
+}
+
+PetscErrorCode ModelWarnOfObstacles(const Model *m, Diag *diag)
+{
+  Met *met;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->c->n_bodies, &met));
+  for (PetscInt p = 0; p < m->space->support->n_groups; ++p) meet(m, p, met + m->points->body[p]);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, met, (PetscMPIInt)(2 * m->c->n_bodies), MPIU_INT, MPI_SUM, m->comm));
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b) tell_met(m, b, met + b, diag);
+  PetscCall(PetscFree(met));
   PetscFunctionReturn(0);
 }

@@ -205,7 +205,7 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
   PetscCall(AdviseCells(m, diag));
   PetscCall(AdvisePulses(m, diag));
   advise_down(m, diag);
-  advise_passing(m, diag);
+  PetscCall(AdvisePassing(m, diag));
   advise_late(m, diag);
   advise_dilatancy(m, diag);
   for (PetscInt k = 0; k < m->c->n_measures; ++k) PetscCall(AdviseReaction(m, m->c->measures + k, diag));

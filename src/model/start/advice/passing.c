@@ -8,12 +8,40 @@
 #define LOOKS 64     /* between start and end */
 #define NO_DEPTH 0.5 /* of a cell */
 
-/* How far the place reaches along an axis, m; < 0: it is not known, or has no end there. */
-static PetscReal depth_of(const Selector *on, PetscInt axis)
+/* Where material is at the start, m. */
+typedef struct {
+  PetscReal low[3], high[3];
+} Extent;
+
+static PetscErrorCode FindExtent(const Model *m, Extent *e)
 {
+  PetscReal local[6], all[6];
+
+  PetscFunctionBeginUser;
+  for (int i = 0; i < 6; ++i) local[i] = -PETSC_MAX_REAL;
+  for (PetscInt p = 0; p < m->points->n; ++p)
+    for (PetscInt d = 0; d < m->dim; ++d) {
+      const PetscReal x = point_real(m->points, POINT_X, p)[d];
+      local[d] = PetscMax(local[d], -x);
+      local[3 + d] = PetscMax(local[3 + d], x);
+    }
+  PetscCall(MPIU_Allreduce(local, all, 6, MPIU_REAL, MPIU_MAX, m->comm));
+  for (int d = 0; d < 3; ++d) e->low[d] = -all[d], e->high[d] = all[3 + d];
+  PetscFunctionReturn(0);
+}
+
+/* How far the place reaches into the material along an axis, m: it may go on beyond it on one side. < 0: it does on
+ * both, or on none, or is not known. */
+static PetscReal depth_of(const Model *m, const Selector *on, PetscInt axis, const Extent *e)
+{
+  const PetscBool box = (PetscBool)(on->has_shape && on->shape.kind == SHAPE_BOX);
+  const PetscReal min = box ? on->shape.min[axis] : on->min[axis], max = box ? on->shape.max[axis] : on->max[axis];
   for (int high = 0; high < 2 && on->boundary; ++high)
     if (!strcmp(on->boundary, box_side_name(axis, high))) return 0;
-  return on->has[axis] && !on->has_shape ? on->max[axis] - on->min[axis] : -1;
+  if (!box && (on->has_shape || !on->has[axis])) return -1;
+  if (max - min <= NO_DEPTH * m->grid->smallest) return max - min;
+  if ((min < e->low[axis]) == (max > e->high[axis])) return -1;
+  return PetscMax(0, min < e->low[axis] ? max - e->low[axis] : e->high[axis] - min);
 }
 
 /* The farthest that the entry goes along an axis until the end, m. */
@@ -26,12 +54,12 @@ static PetscReal way_of(const Model *m, const MotionSpec *motion, PetscInt axis)
   return most;
 }
 
-static void advise_along(const Model *m, PetscInt k, PetscInt axis, Diag *diag)
+static void advise_along(const Model *m, PetscInt k, PetscInt axis, const Extent *extent, Diag *diag)
 {
   const MotionSpec *motion = m->c->boundary + k;
-  const PetscReal depth = depth_of(&motion->on, axis), way = way_of(m, motion, axis) / m->grid->smallest;
+  const PetscReal depth = depth_of(m, &motion->on, axis, extent), way = way_of(m, motion, axis) / m->grid->smallest;
   char path[64];
-  if (depth < 0 || depth > NO_DEPTH * m->grid->smallest || way <= PASSES) return;
+  if (depth < 0 || way <= PASSES || (motion->moves && depth > NO_DEPTH * m->grid->smallest)) return;
   snprintf(path, sizeof path, "boundary[%d].%s", (int)k,
            motion->moves                     ? "moves"
            : motion->kind == MOTION_VELOCITY ? "velocity"
@@ -51,13 +79,18 @@ static void advise_along(const Model *m, PetscInt k, PetscInt axis, Diag *diag)
   diag_hint(diag, "a wall goes along: walls: [{shape: ..., contact: bonded or stick, motion: [...]}]; so does fem");
 }
 
-void advise_passing(const Model *m, Diag *diag)
+PetscErrorCode AdvisePassing(const Model *m, Diag *diag)
 {
-  if (!m->method->restores_grid) return;
+  Extent extent;
+
+  PetscFunctionBeginUser;
+  if (!m->method->restores_grid) PetscFunctionReturn(0);
+  PetscCall(FindExtent(m, &extent));
   for (PetscInt k = 0; k < m->c->n_boundary; ++k) {
     const MotionSpec *motion = m->c->boundary + k;
     if (motion->absent || (motion->kind != MOTION_DISPLACEMENT && motion->kind != MOTION_VELOCITY)) continue;
     for (PetscInt d = 0; d < m->dim; ++d)
-      if (motion->component[d]) advise_along(m, k, d, diag);
+      if (motion->component[d]) advise_along(m, k, d, &extent, diag);
   }
+  PetscFunctionReturn(0);
 }
