@@ -32,23 +32,30 @@ static PetscReal sum_of_cell(const Grid *grid, PetscInt cell)
   return 0.25 * (PetscReal)kind->nodes * sum;
 }
 
-static PetscErrorCode FindSides(const Model *m, Sides *sides)
+static void sides_of_box(const GridBox *box, PetscInt dim, Sides *sides)
 {
-  const GridBox *box = m->grid->box;
-  PetscReal most = 0;
-
-  PetscFunctionBeginUser;
-  *sides = (Sides){.axes = kinematics_is_plane(m->c->kinematics) ? 2 : 3};
-  sides->box = (PetscBool)(box && m->grid->nodes_per_cell == (m->dim == 2 ? 4 : 8));
-  for (PetscInt cell = 0; !sides->box && cell < m->grid->n_cells; ++cell)
-    most = PetscMax(most, sum_of_cell(m->grid, cell));
-  if (!sides->box) PetscCall(MPIU_Allreduce(&most, &sides->sum, 1, MPIU_REAL, MPIU_MAX, m->comm));
-  for (PetscInt d = 0; sides->box && d < m->dim; ++d) {
+  sides->box = PETSC_TRUE;
+  for (PetscInt d = 0; d < dim; ++d) {
     sides->h[d] = PETSC_MAX_REAL;
     for (PetscInt i = 0; i < box->counts[d]; ++i)
       sides->h[d] = PetscMin(sides->h[d], box->line[d][i + 1] - box->line[d][i]);
     sides->sum += 1 / PetscSqr(sides->h[d]);
   }
+}
+
+static PetscErrorCode FindSides(const Model *m, Sides *sides)
+{
+  const Grid *grid = m->grid;
+  PetscReal most = 0;
+
+  PetscFunctionBeginUser;
+  *sides = (Sides){.axes = kinematics_is_plane(m->c->kinematics) ? 2 : 3};
+  if (grid->box && grid->nodes_per_cell == (m->dim == 2 ? 4 : 8)) {
+    sides_of_box(grid->box, m->dim, sides);
+    PetscFunctionReturn(0);
+  }
+  for (PetscInt cell = 0; cell < grid->n_cells; ++cell) most = PetscMax(most, sum_of_cell(grid, cell));
+  PetscCall(MPIU_Allreduce(&most, &sides->sum, 1, MPIU_REAL, MPIU_MAX, m->comm));
   PetscFunctionReturn(0);
 }
 
