@@ -184,9 +184,12 @@ static PetscErrorCode WarnOfGain(Model *m, Diag *diag)
   if (case_is_static(&m->c->analysis) || !(share > TRANSFER_ALLOWED)) PetscFunctionReturn(0);
   diag_warning(diag, NULL, "stresses gave %.4g J more than had been put into them, %.2g %% of the %.4g J that came in",
                (double)-e.dissipated, (double)(100 * share), (double)m->most_energy);
-  diag_hint(diag,
-            "steps must see an impact: no longer than a wave takes through a cell, size / sqrt((lambda + 2 mu) / "
-            "density), or with `analysis: {bossak: -0.3}` (docs/theory.md, Energy)");
+  diag_hint(
+    diag, "%s",
+    m->c->analysis.type == ANALYSIS_EXPLICIT
+      ? "shorter substeps (`analysis: {courant: 0.4}`), or `basis: gimp` where points hang on a corner of a cell"
+      : "steps must see an impact: no longer than a wave takes through a cell, size / sqrt((lambda + 2 mu) / "
+        "density), or with `analysis: {bossak: -0.3}` (docs/theory.md, Energy)");
   PetscFunctionReturn(0);
 }
 
