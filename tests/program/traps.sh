@@ -389,6 +389,22 @@ warned "a plane that goes on" "have nodes in their clouds where no body has any,
   'hint: hold what the body has and no more' --
 warned "a plane that ends with the body" -- --set 'boundary[0].on.y=[0, 0.5]'
 
+# --- a place across gravity that points along x ---
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, end: 1, step: 0.01}
+grid: {box: {min: [-0.4, -0.2], max: [0, 0.2]}, size: 0.1}
+bodies: [{name: s, shape: {box: {min: [-0.2, -0.1], max: [0, 0.1]}}, material: m}]
+materials: {m: {law: mohr-coulomb, density: 2000, young: 1e6, poisson: 0.3, friction_angle: 30, cohesion: 0}}
+boundary: [{on: {boundary: right}, fix: [x, y]}]
+loads: {gravity: [9.81, 0]}
+measures: {top: {free_surface: elevation, at: 0.05}}
+END
+warned "across gravity" --
+expect "beside it" 2 "$talus" check case.yaml --set measures.top.at=-0.3
+says err.txt "this is outside the grid"
+
 # --- what never comes, and numbers of other units ---
 cat >case.yaml <<'END'
 kinematics: plane-strain

@@ -52,14 +52,27 @@ static void outside_grid(const Model *m, const MeasureSpec *s, const char *key, 
              text_position(m->dim, m->grid->min, from), text_position(m->dim, m->grid->max, to));
 }
 
+/* What places `at` there are: along x, or across gravity. */
+static void range_of_at(const Model *m, const MeasureSpec *s, PetscReal *low, PetscReal *high)
+{
+  PetscReal right[2] = {1, 0}, up[2];
+  if (!strcmp(s->kind, "free_surface")) measure_up(m, right, up);
+  *low = *high = 0;
+  for (int d = 0; d < 2; ++d) {
+    *low += PetscMin(right[d] * m->grid->min[d], right[d] * m->grid->max[d]);
+    *high += PetscMax(right[d] * m->grid->min[d], right[d] * m->grid->max[d]);
+  }
+}
+
 void measures_check(const Model *m, Diag *diag)
 {
   for (PetscInt k = 0; k < m->c->n_measures; ++k) {
     const MeasureSpec *s = &m->c->measures[k];
     const PetscReal *low = m->grid->min, *high = m->grid->max;
-    PetscReal min[3], max[3];
+    PetscReal min[3], max[3], first, last;
     PetscBool meets = PETSC_TRUE;
-    if (s->has_at && (s->at < low[0] || s->at > high[0])) outside_grid(m, s, "at", diag);
+    range_of_at(m, s, &first, &last);
+    if (s->has_at && (s->at < first || s->at > last)) outside_grid(m, s, "at", diag);
     if (!s->has_in) continue;
     shape_bounds(&s->in, m->dim, min, max);
     for (PetscInt d = 0; d < m->dim; ++d) meets = meets && min[d] < high[d] && max[d] > low[d];

@@ -244,9 +244,11 @@ static const MeasureNumber *const words[] = {
   WORD("inclination",
        "of the line fitted to the `middle` of the surface from wall to wall: positive if it falls towards +x", "deg",
        .may_about = PETSC_TRUE, .in = PETSC_TRUE, .middle = PETSC_TRUE, .value = FreeSurface, .which = INCLINATION),
-  WORD("elevation",
-       "coordinate against gravity of the surface `at` a coordinate across gravity, an x where that points down, m",
-       "m", .at = PETSC_TRUE, .in = PETSC_TRUE, .value = FreeSurface, .which = ELEVATION),
+  WORD(
+    "elevation",
+    "coordinate against gravity of the surface `at` a coordinate across gravity, m: x where that points down, -x up, "
+    "y where it points to +x, -y to -x",
+    "m", .at = PETSC_TRUE, .in = PETSC_TRUE, .value = FreeSurface, .which = ELEVATION),
   WORD("deviation", "how far it is from that line: root mean square, m", "m", .may_about = PETSC_TRUE, .in = PETSC_TRUE,
        .middle = PETSC_TRUE, .value = FreeSurface, .which = DEVIATION),
   NULL,
