@@ -20,6 +20,14 @@ static void check_motion(const Case *c, const Case *from, Diag *diag)
   }
 }
 
+/* There, or declared as absent. */
+static PetscBool knows_body(const Case *c, const char *name)
+{
+  for (PetscInt b = 0; b < c->n_bodies; ++b)
+    if (!strcmp(c->bodies[b].name, name)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Bodies find their state by their names: who has none begins as drawn, and that of others stays behind. */
 static PetscErrorCode CheckNames(const Case *c, const Case *from, Diag *diag)
 {
@@ -32,14 +40,14 @@ static PetscErrorCode CheckNames(const Case *c, const Case *from, Diag *diag)
   for (PetscInt b = 0; b < c->n_bodies; ++b) goes_on += !c->bodies[b].absent && !body_comes(c, from, b);
   for (PetscInt b = 0; b < from->n_bodies; ++b) there[b] = from->bodies[b].name;
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
-    if (c->bodies[b].absent || !body_comes(c, from, b)) continue;
+    if (c->bodies[b].absent || knows_body(from, c->bodies[b].name)) continue;
     snprintf(path, sizeof path, "bodies[%d].name", (int)b);
     (goes_on ? diag_warning : diag_error)(diag, path, "the run of `initial` has no body '%s': %s", c->bodies[b].name,
                                           goes_on ? "it begins as it is drawn" : "nothing of its state would go on");
     diag_hint_names(diag, c->bodies[b].name, there);
   }
   for (PetscInt b = 0; b < from->n_bodies && goes_on; ++b)
-    if (!from->bodies[b].absent && body_goes(c, from, b))
+    if (!from->bodies[b].absent && !knows_body(c, there[b]))
       diag_warning(diag, "initial.run", "'%s' of that run is not among the bodies here: it stays behind", there[b]);
   PetscCall(PetscFree(there));
   PetscFunctionReturn(0);

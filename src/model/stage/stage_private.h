@@ -9,8 +9,6 @@ PetscErrorCode TakePoints(Model *model, const Tables *tables, const Case *from, 
                           char reason[256]);
 /* Was body b of the case not there in `from`? */
 PetscBool body_comes(const Case *c, const Case *from, PetscInt b);
-/* Is body b of `from` not there in the case? */
-PetscBool body_goes(const Case *c, const Case *from, PetscInt b);
 /* bodies/arrive.c. Collective. Points of such bodies, in a mesh whose nodes stood at `drawn` (n_nodes x dim) when they
  * were seeded, fill their cells as they are now; cells that have no room for them are mistakes. */
 PetscErrorCode BodiesArrive(Model *model, const Case *from, const PetscReal *drawn, Diag *diag);

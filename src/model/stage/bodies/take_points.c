@@ -19,11 +19,6 @@ PetscBool body_comes(const Case *c, const Case *from, PetscInt b)
   return PETSC_TRUE;
 }
 
-PetscBool body_goes(const Case *c, const Case *from, PetscInt b)
-{
-  return (PetscBool)(body_here(c, from->bodies + b) < 0);
-}
-
 static PetscInt material_of(const Case *c, PetscInt body)
 {
   PetscInt i = 0;
