@@ -134,7 +134,7 @@ materials: {m: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
 measures: {p: {momentum: x}, gone: {outside_momentum: x}, energy: {energy: outside}}
 END
 for basis in gimp cell; do
-  for from in 0.3 0.31 0.34 0.37; do
+  for from in 0.3 0.34 0.37; do
     turn
     expect "what flies out, $basis from $from on $ranks" 0 on_ranks $ranks "$talus" run leaves.yaml --out leaves --force --quiet --set "basis={$basis: {}}" \
       --set "bodies[0].shape.box={min: [$from, 0.4], max: [$(awk "BEGIN { print $from + 0.2 }"), 0.6]}"
