@@ -4,8 +4,8 @@
 
 #define ASIDE 1e-6 /* of a cell: nodes farther apart along an axis are not beside each other */
 
-/* Of each node: is it (the first sides) or is it beyond (others) a held face that looks that way, -x x -y y -z z; and
- * which axes that face holds. */
+/* Of each node: is it on a held face that looks that way (-x x -y y -z z), or beyond one; and which axes that face
+ * holds. */
 enum { SIDES = 6, HOLDS = SIDES, NUMBERS = SIDES + 3 };
 
 typedef struct {
