@@ -498,4 +498,22 @@ expect "a block under loads" 0 "$talus" run loaded.yaml --force --quiet --out be
 expect "another grid" 2 "$talus" run loaded.yaml --force --out goes --set initial.run=before --set grid.size=0.2
 says err.txt "walls, interfaces or loads on bodies it needs the same one"
 
+# What flew is caught by nodes that another run holds: its momentum is what they give and gravity, from the first step on.
+cat >flight.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, step: 0.01, end: 0.02, scheme: newmark}
+grid: {box: {min: [0, 0], max: [2, 2]}, size: 0.25}
+bodies: [{name: block, shape: {box: {min: [0.5, 0.5], max: [1.5, 1]}}, material: rubber}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e5, poisson: 0.3}}
+loads: {gravity: [0, -10]}
+END
+sed '$a boundary: [{on: {y: [0.7, 1.01]}, fix: [x, y]}]\ninitial: {run: flight}\nmeasures: {p: {momentum: y}, R: {reaction: y, of: {boundary: 0}}}' flight.yaml >caught.yaml
+for method in mpm fem; do
+  turn
+  expect "what flies, $method" 0 "$talus" run flight.yaml --force --quiet --out flight --set method=$method
+  expect "and is caught, $method on $ranks" 0 on_ranks $ranks "$talus" run caught.yaml --force --quiet --out caught --set method=$method
+  awk -F, 'NR > 2 && ($3 - p - 0.01 * ($4 - 5000)) ^ 2 > 1e-12 { exit 1 } { p = $3 }' caught/history.csv || fail "$name: $(cat caught/history.csv)"
+done
+
 finish

@@ -63,8 +63,8 @@ static void keep_held(const Model *m, PetscReal *values)
 }
 
 /* Forces fade at held nodes, too: at the start the boundary bears what it bore, and h is what the state lacks to it.
- * Where no node knows of a reaction (another run's points, which bring none) it is what the state asks for; in a stage
- * nothing was held. */
+ * Where no node knows of a reaction, nothing was held; but points that another run hands to other nodes bring none, and
+ * there it is what the state asks for. */
 static PetscErrorCode HoldReactions(const Model *m, const Case *from, const PetscReal *residual, PetscReal *held)
 {
   const PetscReal *bore = from->analysis.type == ANALYSIS_EXPLICIT ? m->nodes->reaction : m->nodes->held;
@@ -75,7 +75,7 @@ static PetscErrorCode HoldReactions(const Model *m, const Case *from, const Pets
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < owned; ++i) any |= bore[i] != 0;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_BOOL, MPI_LOR, m->comm));
-  if (!any && m->c->stage > 0) PetscFunctionReturn(0);
+  if (!any && (m->c->stage > 0 || from->n_boundary == 0)) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &lacks));
   for (PetscInt i = 0; i < owned; ++i) lacks[i] = residual[i] - bore[i];
   keep_held(m, lacks);
