@@ -38,8 +38,8 @@ PetscErrorCode WallsDestroy(Walls **walls)
 /* But for rounding. */
 static PetscBool is_later(PetscReal t, PetscReal than) { return t > than * (1 + 1e-9); }
 
-/* A step that ends at `until` still meets the wall, one that ends at `from` does not yet. In what a search tries no time
- * passes: there stands what it begins with. */
+/* A step that ends at `until` still meets the wall, one that ends at `from` does not yet. In what a search tries no
+ * time passes: there stands what it begins with. */
 PetscBool wall_stands(const Walls *walls, PetscInt k, PetscReal t)
 {
   const WallSpec *w = walls->c->walls + k;

@@ -125,6 +125,23 @@ static PetscInt list_around(const Discretisation *s, Extension *e, PetscInt n, c
   return found;
 }
 
+/* taken += what followers take from the nodes behind, of so much as each has of its own; on all copies. */
+static PetscErrorCode SumTaken(const Discretisation *s, PetscInt stride, const PetscReal *mass, PetscReal *taken)
+{
+  const Extension *e = s->extension;
+  Row row;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < e->n_followers; ++k)
+    for (PetscInt way = 0; way < WAYS; ++way) {
+      if (!owned_row(s, e->follower[k], way, &row)) continue;
+      for (PetscInt I = 0; I < row.n; ++I)
+        if (row.N[I] < 0) taken[row.node[I]] -= row.N[I] * mass[e->follower[k] * stride];
+    }
+  PetscCall(Exchange(s->grid, 1, taken));
+  PetscFunctionReturn(0);
+}
+
 /* The linear way takes mass from the node behind. Where several followers take from one, as at a slanting or pointed
  * end, it could be left with none, and any force would throw it away: it gives them as much of its slope as leaves it
  * enough. */
@@ -133,17 +150,10 @@ static PetscErrorCode SpareLeaders(const Discretisation *s, PetscInt n, const Pe
 {
   Extension *e = s->extension;
   PetscReal *taken;
-  Row row;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(s->grid->n_nodes, &taken));
-  for (PetscInt k = 0; k < e->n_followers; ++k)
-    for (PetscInt way = 0; way < WAYS; ++way) {
-      if (!owned_row(s, e->follower[k], way, &row)) continue;
-      for (PetscInt I = 0; I < row.n; ++I)
-        if (row.N[I] < 0) taken[row.node[I]] -= row.N[I] * mass[e->follower[k] * stride];
-    }
-  PetscCall(Exchange(s->grid, 1, taken));
+  PetscCall(SumTaken(s, stride, mass, taken));
   for (PetscInt k = 0; k < n; ++k) {
     const PetscReal most = (1 - KEEPS) * mass[active[k] * stride];
     if (active[k] < s->grid->n_owned && taken[active[k]] > most) e->lean[active[k]] = most / taken[active[k]];
@@ -153,50 +163,30 @@ static PetscErrorCode SpareLeaders(const Discretisation *s, PetscInt n, const Pe
   PetscFunctionReturn(0);
 }
 
-/* What the list's followers take from the nodes behind, times what each has of its own; on all copies. */
-static PetscErrorCode Taken(const Discretisation *s, PetscReal *taken)
-{
-  const Extension *e = s->extension;
-  Row row;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscArrayzero(taken, s->grid->n_nodes));
-  for (PetscInt k = 0; k < e->n_followers; ++k)
-    for (PetscInt way = 0; way < WAYS; ++way) {
-      const PetscInt node = e->follower[k];
-      if (!owned_row(s, node, way, &row)) continue;
-      for (PetscInt I = 0; I < row.n; ++I)
-        taken[row.node[I]] += PetscMax(0, -row.N[I]) * e->fill[node] * s->whole[node];
-    }
-  PetscCall(Exchange(s->grid, 1, taken));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode ExtensionSpare(const Discretisation *s)
 {
   const PetscInt n = s->grid->n_nodes;
   Extension *e = s->extension;
-  PetscReal *taken, *stays;
+  PetscReal *volume, *taken, *stays;
   PetscBool any;
   Row row;
 
   PetscFunctionBeginUser;
   PetscCall(ExtensionList(s, n, NULL, &any));
   if (!any) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc2(n, &taken, n, &stays));
-  PetscCall(Taken(s, taken));
+  PetscCall(PetscCalloc3(n, &volume, n, &taken, n, &stays));
+  for (PetscInt i = 0; i < n; ++i) volume[i] = e->fill[i] * s->whole[i];
+  PetscCall(SumTaken(s, 1, volume, taken));
   for (PetscInt k = 0; k < e->n_followers; ++k)
     for (PetscInt way = 0; way < WAYS; ++way) {
       if (!owned_row(s, e->follower[k], way, &row)) continue;
-      for (PetscInt I = 0; I < row.n; ++I) {
-        const PetscInt node = row.node[I];
-        if (row.N[I] < 0 && taken[node] > (1 - LEAVES) * e->fill[node] * s->whole[node]) stays[e->follower[k]] = 1;
-      }
+      for (PetscInt I = 0; I < row.n; ++I)
+        if (row.N[I] < 0 && taken[row.node[I]] > (1 - LEAVES) * volume[row.node[I]]) stays[e->follower[k]] = 1;
     }
   PetscCall(Exchange(s->grid, 1, stays));
   for (PetscInt i = 0; i < n; ++i)
     if (stays[i] > 0 && !node_needs_lead(e, i)) e->ways[i] = 0;
-  PetscCall(PetscFree2(taken, stays));
+  PetscCall(PetscFree3(volume, taken, stays));
   PetscFunctionReturn(0);
 }
 

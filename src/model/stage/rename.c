@@ -239,13 +239,6 @@ static void check_stresses(const Case *c, const Case *from, Diag *diag)
   }
 }
 
-static const MaterialSpec *material_of(const Case *c, PetscInt body)
-{
-  PetscInt i = 0;
-  while (strcmp(c->materials[i].name, c->bodies[body].material)) ++i;
-  return c->materials + i;
-}
-
 /* NAN: not given. */
 static PetscReal value_of(const MaterialSpec *s, const char *name)
 {
@@ -260,7 +253,8 @@ static void check_starts(const Case *c, const Case *from, Diag *diag)
   char path[256];
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
     if (c->bodies[b].absent || body_comes(c, from, b)) continue;
-    const MaterialSpec *is = material_of(c, b), *was = material_of(from, case_body(from, c->bodies[b].name));
+    const MaterialSpec *is = c->materials + body_material(c, b);
+    const MaterialSpec *was = from->materials + body_material(from, case_body(from, c->bodies[b].name));
     const Law *law = strcmp(is->law, was->law) ? NULL : law_find(is->law);
     for (const LawParameter *p = law ? law->parameters : NULL; p && p->name; ++p) {
       const PetscReal now = value_of(is, p->name), before = value_of(was, p->name);

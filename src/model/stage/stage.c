@@ -116,14 +116,10 @@ static PetscErrorCode TakeReactions(Model *m, const Tables *tables)
 static PetscErrorCode TakeNodes(Model *m, const Tables *tables, const Case *from, PetscBool next, PetscBool home,
                                 Diag *diag, char reason[256])
 {
-  char other[256] = "";
-
   PetscFunctionBeginUser;
-  state_check_grid(m, tables, other);
   if (m->method->clouds) PetscCall(StateCloudSettle(m, tables, home, reason));
   else if (!m->method->restores_grid) PetscCall(TakeMesh(m, tables, from, diag, reason));
   else if (next) PetscCall(NodalFieldsFromTables(m->nodes, PETSC_FALSE, tables, reason));
-  else if (!other[0]) PetscCall(TakeReactions(m, tables));
   m->guess = (Guess){0};
   if (next && !reason[0]) PetscCall(ForcesFromTables(m, tables, reason));
   PetscFunctionReturn(0);
@@ -198,6 +194,7 @@ static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool
   if (!reason[0] && next) PetscCall(TakeTracers(m, tables, from, reason));
   if (!reason[0]) PetscCall(TakeCarriers(m, tables, from, reason));
   if (!reason[0]) PetscCall(TakeNodes(m, tables, from, next, home, diag, reason));
+  if (!next && !onto && m->method->restores_grid && !m->method->clouds) PetscCall(TakeReactions(m, tables));
   PetscCall(ReasonShare(m->comm, reason));
   if (reason[0] || diag_errors(diag) > errors) PetscFunctionReturn(0);
   if (m->method->restores_grid || m->grid->n_fields > 1) PetscCall(BodiesStand(m, from, diag));

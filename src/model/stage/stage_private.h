@@ -9,6 +9,8 @@ PetscErrorCode TakePoints(Model *model, const Tables *tables, const Case *from, 
                           char reason[256]);
 /* Was body b of the case not there in `from`? */
 PetscBool body_comes(const Case *c, const Case *from, PetscInt b);
+/* The index of its material. */
+PetscInt body_material(const Case *c, PetscInt body);
 /* bodies/arrive.c. Collective. Points of such bodies, in a mesh whose nodes stood at `drawn` (n_nodes x dim) when they
  * were seeded, fill their cells as they are now; cells that have no room for them are mistakes. */
 PetscErrorCode BodiesArrive(Model *model, const Case *from, const PetscReal *drawn, Diag *diag);

@@ -1,5 +1,5 @@
-/* Nodes beyond a face that a boundary holds are no obstacles of gmm unless they are held as that face is: material never
- * comes there, and a node that may move would be one more in the clouds of the face, which would move with it. */
+/* Nodes beyond a face that a boundary holds are no obstacles of gmm unless they are held as that face is: material
+ * never comes there, and a node that may move would be one more in the clouds of the face, which would move with it. */
 #include "model/model_private.h"
 
 #define ASIDE 1e-6 /* of a cell: nodes farther apart along an axis are not beside each other */
@@ -86,8 +86,7 @@ static PetscErrorCode GoOn(const Faces *f)
   PetscReal *next;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(mesh->n_nodes * NUMBERS, &next));
-  PetscCall(PetscArrayzero(next, mesh->n_nodes * NUMBERS));
+  PetscCall(PetscCalloc1(mesh->n_nodes * NUMBERS, &next));
   for (PetscInt cell = 0; cell < mesh->n_cells; ++cell)
     for (PetscInt i = 0; i < nn * nn; ++i)
       look(f, mesh->cell_node[cell * nn + i / nn], mesh->cell_node[cell * nn + i % nn], next);

@@ -19,7 +19,7 @@ PetscBool body_comes(const Case *c, const Case *from, PetscInt b)
   return PETSC_TRUE;
 }
 
-static PetscInt material_of(const Case *c, PetscInt body)
+PetscInt body_material(const Case *c, PetscInt body)
 {
   PetscInt i = 0;
   while (strcmp(c->materials[i].name, c->bodies[body].material)) ++i;
@@ -53,7 +53,7 @@ static PetscErrorCode SwapMaterials(Model *m, const Case *from, Diag *diag)
   for (PetscInt i = 0; i < from->n_materials; ++i) PetscCall(MaterialAt(from, i, m->time, unheard, &was[i]));
   PetscCall(DiagDestroy(&unheard));
   for (PetscInt p = 0; p < m->points->n; ++p) {
-    const PetscInt body = m->points->body[p], i = material_of(m->c, body);
+    const PetscInt body = m->points->body[p], i = body_material(m->c, body);
     const Material *before = &was[m->points->material[p]], *now = &m->materials[i];
     m->points->material[p] = i;
     if (!before->law) continue;

@@ -121,8 +121,8 @@ static const char *extent_of(PetscInt dim, const PetscReal *min, const PetscReal
   return text;
 }
 
-/* A mesh goes with its body, which may well come to a wall that it does not reach at the start, as a wall that moves may
- * come into the grid. */
+/* A mesh goes with its body, which may well come to a wall that it does not reach at the start; and a wall that moves
+ * may come into the grid. */
 static void advise_wall(const Model *m, PetscInt k, Diag *diag)
 {
   const WallSpec *wall = m->c->walls + k;
