@@ -151,7 +151,8 @@ static void add_face(LoadFaces *faces, const Grid *grid, PetscInt cell, PetscInt
   }
 }
 
-static PetscErrorCode GridTraction(Loads *loads, const Grid *grid, PetscInt load, PetscInt *n_faces)
+static PetscErrorCode GridTraction(Loads *loads, const Grid *grid, const Points *points, PetscInt load,
+                                   PetscInt *n_faces)
 {
   LoadFaces *faces = &loads->faces[load];
   PetscInt n, *cell, *side;
@@ -159,7 +160,7 @@ static PetscErrorCode GridTraction(Loads *loads, const Grid *grid, PetscInt load
 
   PetscFunctionBeginUser;
   PetscCall(FacesFree(faces));
-  PetscCall(GridSelectFaces(grid, &loads->c->loads[load].on, &n, &cell, &side));
+  PetscCall(SidesOfGrid(grid, points, &loads->c->loads[load].on, &n, &cell, &side));
   PetscCall(PetscMalloc1(n * FACE_MAX_POINTS, &faces->cell));
   PetscCall(PetscCalloc1(n * FACE_MAX_POINTS * grid->nodes_per_cell, &faces->N));
   PetscCall(PetscCalloc1(n * FACE_MAX_POINTS * 3, &faces->x));
@@ -197,16 +198,37 @@ static PetscErrorCode CarryFaces(Loads *loads, const Grid *grid, PetscInt load, 
   PetscFunctionReturn(0);
 }
 
-/* On the surface of a shape that cells do not follow. */
-static PetscErrorCode CarrySurface(Loads *loads, const Grid *grid, PetscInt load, PetscInt body, PetscInt *n)
+/* A side of a box is a place in space. */
+static void put_on_side(const Grid *grid, Selector *on)
+{
+  for (PetscInt side = 0; grid->box && on->boundary && side < 2 * grid->dim; ++side) {
+    const PetscInt axis = side / 2;
+    const PetscReal at = side % 2 ? grid->max[axis] : grid->min[axis];
+    if (strcmp(on->boundary, box_side_name(axis, side % 2))) continue;
+    on->min[axis] = on->has[axis] ? PetscMax(at, on->min[axis]) : at;
+    on->max[axis] = on->has[axis] ? PetscMin(at, on->max[axis]) : at;
+    on->has[axis] = PETSC_TRUE;
+    on->boundary = NULL;
+  }
+}
+
+/* On the surface of a shape that cells do not follow, or of a mesh of the body's own. */
+static PetscErrorCode CarrySurface(Loads *loads, const Grid *grid, PetscInt load, PetscInt body, PetscBool fills,
+                                   PetscInt *n)
 {
   const LoadSpec *spec = &loads->c->loads[load];
-  FacePoint *q;
-  PetscInt *cell;
+  const PetscBool pieces = loads_have_pieces(loads);
+  Selector on = spec->on;
+  FacePoint *q = NULL;
+  PetscInt *cell = NULL;
   PetscReal force[3];
 
   PetscFunctionBeginUser;
-  PetscCall(BodySurfacePoints(grid, loads->c, body, &spec->on, loads_have_pieces(loads), n, &cell, &q));
+  *n = 0;
+  put_on_side(grid, &on);
+  if (body_bearer(loads->c->bodies + body, fills) == BORNE_BY_MESH)
+    PetscCall(BodyMeshPoints(grid, loads->c, body, &on, fills, pieces, n, &cell, &q));
+  else if (!on.boundary) PetscCall(BodySurfacePoints(grid, loads->c, body, &on, pieces, n, &cell, &q));
   for (PetscInt k = 0; k < *n; ++k) {
     force_on(spec, &q[k], force);
     PetscCall(AddCarrier(loads, grid, load, cell[k], &q[k], force));
@@ -225,16 +247,15 @@ static PetscErrorCode BodyTraction(Loads *loads, const Grid *grid, const Points 
   PetscInt n, *cell, *side;
 
   PetscFunctionBeginUser;
-  if (body >= 0 && body_fills_shape(&loads->c->bodies[body], fills) && !loads->c->bodies[body].mesh) {
-    PetscCall(CarrySurface(loads, grid, load, body, &n));
-    PetscCall(MPIU_Allreduce(&n, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
-    PetscFunctionReturn(0);
+  if (body_bearer(loads->c->bodies + body, fills) != BORNE_BY_CELLS) {
+    PetscCall(CarrySurface(loads, grid, load, body, fills, &n));
+  } else {
+    PetscCall(BodyFaces(grid, points, body, &spec->on, PETSC_FALSE, &n, &cell, &side));
+    PetscCall(CarryFaces(loads, grid, load, n, cell, side));
+    PetscCall(PetscFree(cell));
+    PetscCall(PetscFree(side));
   }
-  PetscCall(BodyFaces(grid, points, body, &spec->on, PETSC_FALSE, &n, &cell, &side));
-  PetscCall(CarryFaces(loads, grid, load, n, cell, side));
   PetscCall(MPIU_Allreduce(&n, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
-  PetscCall(PetscFree(cell));
-  PetscCall(PetscFree(side));
   PetscFunctionReturn(0);
 }
 
@@ -242,10 +263,10 @@ static PetscErrorCode BodyTraction(Loads *loads, const Grid *grid, const Points 
 static PetscErrorCode CarryBoundary(Loads *loads, const Grid *grid, const Points *points, PetscInt load,
                                     PetscInt *n_faces)
 {
-  PetscInt n, *cell, *side;
+  PetscInt n, both, *cell, *side;
 
   PetscFunctionBeginUser;
-  PetscCall(FilledSides(grid, points, &loads->c->loads[load].on, &n, &cell, &side));
+  PetscCall(FilledSides(grid, points, &loads->c->loads[load].on, &n, &cell, &side, &both));
   PetscCall(CarryFaces(loads, grid, load, n, cell, side));
   PetscCall(MPIU_Allreduce(&n, n_faces, 1, MPIU_INT, MPI_SUM, grid->comm));
   PetscCall(PetscFree(cell));
@@ -281,7 +302,7 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
     }
     if (c->loads[k].on.body) PetscCall(BodyTraction(l, grid, points, k, fills, &faces));
     else if (kind == LOAD_PRESSURE) PetscCall(CarryBoundary(l, grid, points, k, &faces));
-    else PetscCall(GridTraction(l, grid, k, &faces));
+    else PetscCall(GridTraction(l, grid, points, k, &faces));
     PetscCall(LoadSidesTell(grid, c, points, k, fills, faces, path, diag));
   }
   PetscCall(PointsSort(l->carriers));
@@ -305,14 +326,14 @@ PetscErrorCode LoadsLeaveCells(Loads *l, const Grid *grid, const Points *points)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode LoadsRegrid(Loads *l, const Grid *old, const Grid *grid)
+PetscErrorCode LoadsRegrid(Loads *l, const Grid *old, const Grid *grid, const Points *points)
 {
   PetscInt faces, moved = 0;
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < l->c->n_loads; ++k) {
     if (l->c->loads[k].kind != LOAD_TRACTION || l->c->loads[k].on.body) continue;
-    PetscCall(GridTraction(l, grid, k, &faces));
+    PetscCall(GridTraction(l, grid, points, k, &faces));
   }
   PetscCall(PointsRepartition(l->carriers, old, grid, &moved));
   l->n_nodes = grid->n_nodes;

@@ -45,8 +45,8 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
 PetscErrorCode LoadsLeaveCells(Loads *loads, const Grid *grid, const Points *points);
 PetscErrorCode LoadsDestroy(Loads **loads);
 /* Collective. Let the loads stand on `grid`, which is `old` shared among the ranks in another
- * way. */
-PetscErrorCode LoadsRegrid(Loads *loads, const Grid *old, const Grid *grid);
+ * way, and of which the points know their cells. */
+PetscErrorCode LoadsRegrid(Loads *loads, const Grid *old, const Grid *grid, const Points *points);
 
 /* Not collective, but on every rank: callers are asked for factors. Subtract the nodal forces of
  * dead loads at time t from residual (n_nodes x dim; sums over ranks come later). Faces of the grid

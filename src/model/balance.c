@@ -87,7 +87,7 @@ PetscErrorCode ModelRegrid(Model *m, Grid *grid, PetscInt *moved)
   PetscCall(PointsRepartition(m->points, m->grid, grid, moved));
   PetscInt followers = 0;
   PetscCall(PointsRepartition(m->tracers, m->grid, grid, &followers));
-  PetscCall(LoadsRegrid(m->loads, m->grid, grid));
+  PetscCall(LoadsRegrid(m->loads, m->grid, grid, m->points));
   PetscCall(BoundaryRegrid(&m->boundary, grid));
   PetscCall(ModelDestroyFields(m));
   PetscCall(GridDestroy(&m->grid));

@@ -178,6 +178,9 @@ typedef struct {
 /* Does the body fill its shape, or whole cells? `equal` as below: whether nodes are free of the
  * body's cells. */
 PetscBool body_fills_shape(const BodySpec *body, PetscBool equal);
+/* Collective. The mesh that body b brings of its own; it may be a .geo with the parameters of the grid's. NULL after a
+ * mistake, which goes to diag. */
+PetscErrorCode BodyMeshCreate(MPI_Comm comm, const Case *c, PetscInt b, Diag *diag, Grid **own);
 /* Initial velocity of a body at x: translation and rotation. */
 void body_velocity(const BodySpec *body, PetscInt dim, const PetscReal *x, PetscReal *v);
 PetscErrorCode PointsSeed(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,

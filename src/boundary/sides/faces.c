@@ -1,5 +1,6 @@
 #include "boundary/sides/faces.h"
 #include "boundary/sides/cut_sides.h"
+#include "boundary/sides/side_keys.h"
 
 /* Position on a face from its own coordinates: edges s in [-1, 1], triangles (s, t) barycentric,
  * quadrilaterals [-1, 1]^2. */
@@ -106,54 +107,6 @@ static PetscBool face_selected(const Grid *grid, const Selector *on, const Petsc
   return PETSC_TRUE;
 }
 
-/* A face's identity on all ranks: its three lowest global nodes (two on an edge). */
-static void face_key(const Grid *grid, const PetscInt *node, PetscInt nf, const PetscInt *face, PetscInt key[4])
-{
-  PetscInt all[4] = {-1, -1, -1, -1};
-  for (PetscInt i = 0; i < nf; ++i) all[i] = grid->global_node[node[face[i]]];
-  PetscSortInt(nf, all);
-  for (PetscInt i = 0; i < 4; ++i) key[i] = i < nf ? all[i] : -1;
-}
-
-static int compare_keys(const void *a, const void *b)
-{
-  const PetscInt *x = a, *y = b;
-  for (int i = 0; i < 4; ++i)
-    if (x[i] != y[i]) return x[i] < y[i] ? -1 : 1;
-  return 0;
-}
-
-/* All ranks' keys, sorted: a face that stands twice lies inside the body. Only selected faces of
- * this body's cells take part. */
-static PetscErrorCode GatherKeys(MPI_Comm comm, PetscInt n, const PetscInt *keys, PetscInt *n_all, PetscInt **all)
-{
-  PetscMPIInt size, mine, *count, *start;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMPIIntCast(4 * n, &mine));
-  PetscCall(PetscMalloc2(size, &count, size + 1, &start));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, comm));
-  start[0] = 0;
-  for (PetscMPIInt r = 0; r < size; ++r) start[r + 1] = start[r] + count[r];
-  *n_all = start[size] / 4;
-  PetscCall(PetscMalloc1(4 * *n_all, all));
-  PetscCallMPI(MPI_Allgatherv(keys, mine, MPIU_INT, *all, count, start, MPIU_INT, comm));
-  if (*n_all) qsort(*all, (size_t)*n_all, 4 * sizeof(PetscInt), compare_keys);
-  PetscCall(PetscFree2(count, start));
-  PetscFunctionReturn(0);
-}
-
-static PetscInt count_key(PetscInt n, const PetscInt *all, const PetscInt key[4])
-{
-  const PetscInt *found = n == 0 ? NULL : bsearch(key, all, (size_t)n, 4 * sizeof(PetscInt), compare_keys);
-  if (!found) return 0;
-  PetscInt i = (PetscInt)(found - all) / 4, count = 0;
-  while (i > 0 && !compare_keys(all + 4 * (i - 1), key)) --i;
-  for (; i < n && !compare_keys(all + 4 * i, key); ++i) ++count;
-  return count;
-}
-
 PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, const Selector *on, PetscBool cut,
                          PetscInt *n, PetscInt **cell, PetscInt **side)
 {
@@ -167,7 +120,7 @@ PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, 
       inside[points->cell[p]] = PETSC_TRUE;
       size += grid_cell(grid, points->cell[p])->faces;
     }
-  PetscCall(PetscMalloc1(4 * size, &keys));
+  PetscCall(PetscMalloc1(SIDE_KEY * size, &keys));
   PetscCall(PetscMalloc1(size, cell));
   PetscCall(PetscMalloc1(size, side));
   *n = 0;
@@ -177,19 +130,20 @@ PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, 
     for (PetscInt s = 0; inside[c] && s < type->faces; ++s) {
       if (face_selected(grid, on, node, type->face_nodes, type->face[s]) == cut) continue;
       if (cut && side_share(grid, on, c, s) == 0) continue;
-      face_key(grid, node, type->face_nodes, type->face[s], keys + 4 * *n);
+      side_key(grid, c, s, keys + SIDE_KEY * *n);
       (*cell)[*n] = c;
       (*side)[(*n)++] = s;
     }
   }
-  PetscCall(GatherKeys(grid->comm, *n, keys, &n_all, &all));
+  PetscCall(SideKeysGather(grid->comm, *n, keys, &n_all, &all));
   PetscInt kept = 0;
   for (PetscInt f = 0; f < *n; ++f) {
-    if (count_key(n_all, all, keys + 4 * f) > 1) continue;
+    if (side_key_count(n_all, all, keys + SIDE_KEY * f) > 1) continue;
     (*cell)[kept] = (*cell)[f];
     (*side)[kept++] = (*side)[f];
   }
   *n = kept;
+  if (on->boundary) PetscCall(SidesNamed(grid, on->boundary, n, *cell, *side));
   PetscCall(PetscFree(all));
   PetscCall(PetscFree(inside));
   PetscCall(PetscFree(keys));

@@ -19,6 +19,7 @@ PetscInt face_quadrature(const Kinematics *kinematics, const Grid *grid, PetscIn
 PetscInt face_pieces(const Kinematics *kinematics, const Grid *grid, PetscInt cell, PetscInt side, FacePoint *q);
 
 /* Collective. Faces between the cells that hold points of the body and all others, as far as the
- * selector's coordinates and shape take all their nodes; cut: those that they take in part (cut_sides.h). */
+ * selector's coordinates and shape take all their nodes, and its boundary is what they are of; cut: those that the
+ * coordinates and the shape take in part (cut_sides.h). */
 PetscErrorCode BodyFaces(const Grid *grid, const Points *points, PetscInt body, const Selector *on, PetscBool cut,
                          PetscInt *n, PetscInt **cell, PetscInt **side);

@@ -1,20 +1,45 @@
 #include "boundary/sides/load_sides.h"
 #include "boundary/sides/cut_sides.h"
-#include "points/seed/seed.h"
+#include "boundary/sides/side_keys.h"
+#include "boundary/surface/surface.h"
 
 #define LITTLE 0.01 /* of what a load asks for: so much may go without */
+#define STEPS 0.03  /* of the area of a shape: by so much the sides of cells may have more, */
+#define PART 0.15   /* and of a part of it, beside which there may be slivers of other sides */
+
+static PetscErrorCode FilledCells(const Grid *grid, const Points *points, PetscBool **filled)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(grid->n_cells, filled));
+  for (PetscInt p = 0; p < points->n; ++p)
+    if (points->cell[p] >= 0) (*filled)[points->cell[p]] = PETSC_TRUE;
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode SidesOfGrid(const Grid *grid, const Points *points, const Selector *on, PetscInt *n, PetscInt **cell,
+                           PetscInt **side)
+{
+  PetscBool *filled;
+  PetscInt both;
+
+  PetscFunctionBeginUser;
+  PetscCall(FilledCells(grid, points, &filled));
+  PetscCall(GridSelectFaces(grid, on, n, cell, side));
+  PetscCall(SidesFromMaterial(grid, filled, n, cell, side, &both));
+  PetscCall(PetscFree(filled));
+  PetscFunctionReturn(0);
+}
 
 PetscErrorCode FilledSides(const Grid *grid, const Points *points, const Selector *on, PetscInt *n, PetscInt **cell,
-                           PetscInt **side)
+                           PetscInt **side, PetscInt *both)
 {
   PetscBool *filled;
   PetscInt kept = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(grid->n_cells, &filled));
-  for (PetscInt p = 0; p < points->n; ++p)
-    if (points->cell[p] >= 0) filled[points->cell[p]] = PETSC_TRUE;
+  PetscCall(FilledCells(grid, points, &filled));
   PetscCall(GridSelectFaces(grid, on, n, cell, side));
+  PetscCall(SidesFromMaterial(grid, filled, n, cell, side, both));
   for (PetscInt f = 0; f < *n; ++f)
     if (filled[(*cell)[f]]) (*cell)[kept] = (*cell)[f], (*side)[kept++] = (*side)[f];
   *n = kept;
@@ -27,10 +52,10 @@ static PetscErrorCode FilledCutSides(const Grid *grid, const Points *points, con
                                      PetscInt **cell, PetscInt **side)
 {
   const Selector everywhere = {.boundary = on->boundary};
-  PetscInt kept = 0;
+  PetscInt kept = 0, both;
 
   PetscFunctionBeginUser;
-  PetscCall(FilledSides(grid, points, &everywhere, n, cell, side));
+  PetscCall(FilledSides(grid, points, &everywhere, n, cell, side, &both));
   for (PetscInt f = 0; f < *n; ++f) {
     const PetscReal share = side_share(grid, on, (*cell)[f], (*side)[f]);
     if (share > 0 && share < 1) (*cell)[kept] = (*cell)[f], (*side)[kept++] = (*side)[f];
@@ -57,27 +82,86 @@ static PetscBool material_may_come(const Case *c, const LoadSpec *load, PetscBoo
   return (PetscBool)(fills && load->kind == LOAD_TRACTION);
 }
 
-static PetscErrorCode TellNoFace(const Grid *grid, const Case *c, PetscInt load, const char *path, Diag *diag)
+/* Names that `on.boundary` may be: of the grid, or of the body's own mesh. */
+static PetscErrorCode TellUnknown(const Grid *named, const char *path, const char *of, const Selector *on, Diag *diag)
 {
-  const Selector *on = &c->loads[load].on;
-  PetscInt n, any, *cell, *side;
   char key[96];
   const char **names;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(key, sizeof key, "%s.boundary", path));
+  PetscCall(GridSetNames(named, &names));
+  diag_error(diag, key, "%s has no boundary or region named '%s'", of, on->boundary);
+  diag_hint_names(diag, on->boundary, names);
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(0);
+}
+
+/* On a body: is its own mesh without that name? */
+static PetscErrorCode TellOwnMesh(const Grid *grid, const Case *c, const char *path, const Selector *on, Diag *diag,
+                                  PetscBool *told)
+{
+  Grid *own = NULL;
+  Diag *again; /* what is wrong with the mesh has been said */
+
+  PetscFunctionBeginUser;
+  PetscCall(DiagCreate(&again));
+  PetscCall(BodyMeshCreate(grid->comm, c, case_body(c, on->body), again, &own));
+  PetscCall(DiagDestroy(&again));
+  *told = (PetscBool)(own && !grid_find_set(own, on->boundary) && !grid_find_set(grid, on->boundary));
+  if (*told) PetscCall(TellUnknown(own, path, "the body's mesh", on, diag));
+  PetscCall(GridDestroy(&own));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TellName(const Grid *grid, const Case *c, const char *path, const Selector *on, PetscBool fills,
+                               Diag *diag, PetscBool *told)
+{
+  const Bearer bearer = on->body ? body_bearer(c->bodies + case_body(c, on->body), fills) : BORNE_BY_CELLS;
+
+  PetscFunctionBeginUser;
+  *told = PETSC_FALSE;
+  if (!on->boundary) PetscFunctionReturn(0);
+  if (bearer == BORNE_BY_MESH) {
+    PetscCall(TellOwnMesh(grid, c, path, on, diag, told));
+  } else if (!grid_find_set(grid, on->boundary)) {
+    PetscCall(TellUnknown(grid, path, "the grid", on, diag));
+    *told = PETSC_TRUE;
+  } else if (bearer == BORNE_BY_SHAPE && !grid->box) {
+    char key[96];
+    PetscCall(PetscSNPrintf(key, sizeof key, "%s.boundary", path));
+    diag_error(diag, key, "'%s' cuts the cells of the mesh with its shape, whose surface has no boundaries with names",
+               on->body);
+    diag_hint(diag, "say where it is: x, y, z or shape");
+    *told = PETSC_TRUE;
+  }
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode TellNoFace(const Grid *grid, const Case *c, PetscInt load, PetscBool fills, const char *path,
+                                 Diag *diag)
+{
+  const Selector *on = &c->loads[load].on;
+  PetscInt n, any, *cell, *side;
+  PetscBool told;
+
+  PetscFunctionBeginUser;
+  PetscCall(TellName(grid, c, path, on, fills, diag, &told));
+  if (told) PetscFunctionReturn(0);
   PetscCall(GridSelectFaces(grid, on, &n, &cell, &side));
   PetscCall(MPIU_Allreduce(&n, &any, 1, MPIU_INT, MPI_SUM, grid->comm));
-  if (on->boundary && !on->body && !grid_find_set(grid, on->boundary)) {
-    PetscCall(PetscSNPrintf(key, sizeof key, "%s.boundary", path));
-    PetscCall(GridSetNames(grid, &names));
-    diag_error(diag, key, "the grid has no boundary or region named '%s'", on->boundary);
-    diag_hint_names(diag, on->boundary, names);
-    PetscCall(PetscFree(names));
-  } else if (!on->body && any) tell_empty(c, PETSC_FALSE, path, diag);
+  if (!on->body && any) tell_empty(c, PETSC_FALSE, path, diag);
   else diag_error(diag, path, "selects no face%s", on->body ? " of the body's boundary" : " of the grid's boundary");
   PetscCall(PetscFree(cell));
   PetscCall(PetscFree(side));
   PetscFunctionReturn(0);
+}
+
+/* A pressure pushes into the material, and has no way where that is on both sides. */
+static void tell_between(const Selector *on, PetscInt both, const char *path, Diag *diag)
+{
+  diag_error(diag, path, "%d of these sides lie within the material: a pressure there has no direction", (int)both);
+  diag_hint(diag, "say which body it pushes: `on: {body: ..., boundary: %s}`", on->boundary ? on->boundary : "...");
 }
 
 static void tell_cut(const Case *c, PetscReal borne, PetscReal cut, PetscBool fills, const char *path, Diag *diag)
@@ -92,29 +176,59 @@ static void tell_cut(const Case *c, PetscReal borne, PetscReal cut, PetscBool fi
   else diag_hint(diag, "let sides of cells end there (nodes of the mesh), or give a value that makes up for it");
 }
 
+/* A traction on the steps of cells that do not follow their shape: as much larger than on the shape as they are. */
+static PetscErrorCode TellSteps(const Grid *grid, const Case *c, const LoadSpec *load, PetscReal borne,
+                                const char *path, Diag *diag)
+{
+  const PetscInt body = case_body(c, load->on.body);
+  const char *unit = kinematics_is_plane(c->kinematics) ? "m" : "m2";
+  const PetscBool is_part = (PetscBool)(load->on.has_shape || load->on.has[0] || load->on.has[1] || load->on.has[2]);
+  PetscReal area = 0;
+  PetscInt n, *cell;
+  FacePoint *q;
+
+  PetscFunctionBeginUser;
+  if (load->kind != LOAD_TRACTION || !c->bodies[body].has_shape || load->on.boundary) PetscFunctionReturn(0);
+  PetscCall(BodySurfacePoints(grid, c, body, &load->on, PETSC_FALSE, &n, &cell, &q));
+  for (PetscInt k = 0; k < n; ++k) area += q[k].area;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPIU_SUM, grid->comm));
+  PetscCall(PetscFree(cell));
+  PetscCall(PetscFree(q));
+  if (!(area > 0) || PetscAbsReal(borne - area) < (is_part ? PART : STEPS) * area) PetscFunctionReturn(0);
+  diag_warning(diag, path, "the sides of cells that bear it have %.4g %s, the surface of the shape %.4g %s",
+               (double)borne, unit, (double)area, unit);
+  diag_hint(diag,
+            "'%s' is made of whole cells: a value that is %.3g times as large has the force that the shape would "
+            "have",
+            load->on.body, (double)(area / borne));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LoadSidesTell(const Grid *grid, const Case *c, const Points *points, PetscInt load, PetscBool fills,
                              PetscInt n_faces, const char *path, Diag *diag)
 {
   const Selector *on = &c->loads[load].on;
   const PetscInt body = on->body ? case_body(c, on->body) : -1;
-  PetscInt n, n_cut, filled, *cell, *side, *cut_cell, *cut_side;
+  PetscInt n, n_cut, filled, both = 0, *cell, *side, *cut_cell, *cut_side;
   PetscReal borne, cut;
 
   PetscFunctionBeginUser;
-  if (!n_faces) PetscCall(TellNoFace(grid, c, load, path, diag));
+  if (!n_faces) PetscCall(TellNoFace(grid, c, load, fills, path, diag));
   if (!n_faces) PetscFunctionReturn(0);
-  if (body >= 0 && body_fills_shape(&c->bodies[body], fills) && !c->bodies[body].mesh) PetscFunctionReturn(0);
+  if (body >= 0 && body_bearer(c->bodies + body, fills) != BORNE_BY_CELLS) PetscFunctionReturn(0);
   if (on->body) {
     PetscCall(BodyFaces(grid, points, body, on, PETSC_FALSE, &n, &cell, &side));
     PetscCall(BodyFaces(grid, points, body, on, PETSC_TRUE, &n_cut, &cut_cell, &cut_side));
   } else {
-    PetscCall(FilledSides(grid, points, on, &n, &cell, &side));
+    PetscCall(FilledSides(grid, points, on, &n, &cell, &side, &both));
     PetscCall(FilledCutSides(grid, points, on, &n_cut, &cut_cell, &cut_side));
   }
   PetscCall(CutSides(c->kinematics, grid, on, n, cell, side, n_cut, cut_cell, cut_side, &borne, &cut));
   PetscCall(MPIU_Allreduce(&n, &filled, 1, MPIU_INT, MPI_SUM, grid->comm));
+  if (both && c->loads[load].kind == LOAD_PRESSURE) tell_between(on, both, path, diag);
   if (!filled) tell_empty(c, material_may_come(c, c->loads + load, fills), path, diag);
   else if (cut > LITTLE * (borne + cut)) tell_cut(c, borne, cut, fills, path, diag);
+  else if (on->body) PetscCall(TellSteps(grid, c, c->loads + load, borne, path, diag));
   PetscCall(PetscFree(cell));
   PetscCall(PetscFree(side));
   PetscCall(PetscFree(cut_cell));

@@ -65,3 +65,10 @@ void surface_trim(const Trim *trim, Facet facet, const PetscReal *outward, Piece
  * it is at the start; pieces: with edges, over which functions are to be averaged. Arrays for PetscFree. */
 PetscErrorCode BodySurfacePoints(const Grid *grid, const Case *c, PetscInt body, const Selector *on, PetscBool pieces,
                                  PetscInt *n, PetscInt **cell, FacePoint **point);
+/* Collective. The same of a body with a mesh of its own: on sides of that mesh, of which the selector's boundary is a
+ * physical group; fills: as in LoadsCreate. */
+PetscErrorCode BodyMeshPoints(const Grid *grid, const Case *c, PetscInt body, const Selector *on, PetscBool fills,
+                              PetscBool pieces, PetscInt *n, PetscInt **cell, FacePoint **point);
+/* How a body's surface is found where a load acts on it. */
+typedef enum { BORNE_BY_CELLS, BORNE_BY_SHAPE, BORNE_BY_MESH } Bearer;
+Bearer body_bearer(const BodySpec *body, PetscBool fills);

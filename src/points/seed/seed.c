@@ -307,18 +307,16 @@ static PetscErrorCode SeedCells(const Seeding *s, Points *points, const PointSee
   PetscFunctionReturn(0);
 }
 
-/* The body's own mesh: only its cells matter. It may be a .geo with the parameters of the grid's.
- * NULL after a mistake. */
-static PetscErrorCode CreateOwnMesh(const Seeding *s, Grid **own)
+PetscErrorCode BodyMeshCreate(MPI_Comm comm, const Case *c, PetscInt b, Diag *diag, Grid **own)
 {
-  GridSpec spec = s->c->grid;
+  GridSpec spec = c->grid;
   char path[128];
   PetscFunctionBeginUser;
   spec.kind = GRID_MESH;
-  spec.mesh = s->body->mesh;
-  seed_path(s->b, "mesh", sizeof path, path);
-  PetscCall(GridCreateMesh(s->grid->comm, &spec, s->grid->dim, path, NULL, NULL, s->diag, own));
-  PetscCall(GridCheckAxis(s->c->kinematics, path, s->diag, own));
+  spec.mesh = c->bodies[b].mesh;
+  seed_path(b, "mesh", sizeof path, path);
+  PetscCall(GridCreateMesh(comm, &spec, kinematics_dim(c->kinematics), path, NULL, NULL, diag, own));
+  PetscCall(GridCheckAxis(c->kinematics, path, diag, own));
   PetscFunctionReturn(0);
 }
 
@@ -363,7 +361,7 @@ static PetscErrorCode ChooseBody(Seeding *s, PetscInt *taken, PetscInt64 *next)
   PetscCall(FindMaterial(s));
   if (s->material < 0) PetscFunctionReturn(0);
   if (s->body->mesh) {
-    PetscCall(CreateOwnMesh(s, &own));
+    PetscCall(BodyMeshCreate(s->grid->comm, s->c, s->b, s->diag, &own));
     if (!own) PetscFunctionReturn(0);
     s->source = s->own = own;
   }

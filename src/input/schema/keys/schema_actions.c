@@ -65,9 +65,11 @@ const SchemaTable schema_motion = {.name = "boundary",
 
 static const SchemaEntry traction_entries[] = {
   KEY("name", NAME, NULL, "how `analysis.limit` may call it", AT(LoadSpec, name)),
-  KEY("on", TABLE, NULL,
-      "a boundary of the grid, or of a body: of its shape where that is filled (then the load moves with it)",
-      .table = &schema_selector, REQUIRED, AT(LoadSpec, on)),
+  KEY(
+    "on", TABLE, NULL,
+    "a boundary of the grid, or of a body: of its shape where that is filled, of its own mesh if it has one, and else "
+    "of its cells (then the load moves with it)",
+    .table = &schema_selector, REQUIRED, AT(LoadSpec, on)),
   KEY("value", VECTOR, "N/m2", "force per undeformed boundary; it goes all round in axisymmetry", REQUIRED,
       AT(LoadSpec, value)),
   KEY("amplitude", AMPLITUDE, NULL, "factor over time", .note = "time / end in statics, 1 in dynamics",
@@ -83,9 +85,11 @@ static const SchemaTable traction = {.name = "traction",
                                      .check = SchemaCheckLoad};
 static const SchemaEntry pressure_entries[] = {
   KEY("name", NAME, NULL, "how `analysis.limit` may call it", AT(LoadSpec, name)),
-  KEY("on", TABLE, NULL,
-      "a boundary of the grid, or of a body, at the start that of its shape where that is filled; it moves with it",
-      .table = &schema_selector, REQUIRED, AT(LoadSpec, on)),
+  KEY(
+    "on", TABLE, NULL,
+    "a boundary of the grid, or of a body, at the start that of its shape where that is filled, of its own mesh if it "
+    "has one, and else of its cells; it moves with it",
+    .table = &schema_selector, REQUIRED, AT(LoadSpec, on)),
   KEY("value", NUMBER, "N/m2",
       "force per present boundary, along its present normal: pushes into the material if positive", REQUIRED,
       AT(LoadSpec, value[0])),

@@ -188,10 +188,10 @@ static const SchemaEntry selector_entries[] = {
       GIVEN(Selector, has[1])),
   KEY("z", INTERVAL, "m", "the same for z", ONLY_3D, AT(Selector, min[2]), .second = offsetof(Selector, max[2]),
       GIVEN(Selector, has[2])),
-  KEY(
-    "boundary", TEXT, NULL,
-    "a boundary by name: a physical group of the mesh; of a box left, right, bottom, top, front (z min), back (z max)",
-    AT(Selector, boundary)),
+  KEY("boundary", TEXT, NULL,
+      "a boundary by name: a physical group of the mesh, or of the mesh that the body has of its own; of a box left, "
+      "right, bottom, top, front (z min), back (z max)",
+      AT(Selector, boundary)),
   KEY("body", REFERENCE, NULL, "for loads: the boundary of this body, the load moves with it", .target = "bodies",
       AT(Selector, body)),
   KEY("shape", TABLE, NULL, "where the shape is", .table = &schema_shape, AT(Selector, shape),

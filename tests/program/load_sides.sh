@@ -1,0 +1,108 @@
+#!/bin/sh
+# Where loads act on bodies: named boundaries, meshes of their own, surfaces between two bodies. Forces by hand.
+. "$(dirname "$0")/library.sh"
+
+# near WHAT COLUMN VALUE OFF: of the last row.
+near() {
+  awk -F, -v c="$2" -v e="$3" -v o="$4" 'END { d = $c - e; exit !(d <= o && d >= -o) }' run/history.csv ||
+    fail "$name: $1 is $(tail -n 1 run/history.csv | cut -d, -f"$2"), not $3"
+}
+
+# --- a side of the grid, as far as a body has it: 1 m of the 4 m around it ---
+cat >side.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0}}
+boundary: [{name: left, on: {boundary: left}, fix: [x]}, {name: base, on: {boundary: bottom}, fix: [y]}]
+loads: {tractions: [{on: {body: b, boundary: top}, value: [0, -1000]}]}
+measures: {base: {reaction: y, of: {boundary: base}}}
+END
+for method in fem mpm gmm; do
+  turn
+  expect "a side, $method" 0 on_ranks $ranks "$talus" run side.yaml --out run --force --set method=$method
+  near base 3 1000 1e-3
+  expect "half of it, $method" 0 "$talus" run side.yaml --out run --force --set method=$method --set 'loads.tractions[0].on={body: b, boundary: top, x: [0, 0.5]}'
+  near base 3 500 1e-3
+done
+for method in fem mpm; do
+  expect "no such side, $method" 2 "$talus" check side.yaml --set method=$method --set 'loads.tractions[0].on.boundary=tpo'
+  says err.txt "the grid has no boundary or region named 'tpo'" "did you mean 'top'"
+done
+
+# --- whole cells in the place of a disk: their steps are longer than its circle ---
+expect "steps" 0 "$talus" run side.yaml --out run --force --set 'bodies=[{name: b, shape: {circle: {centre: [0.5, 0.5], radius: 0.5}}, fill: cells, material: m}]' \
+  --set method=mpm --set 'grid.size=0.125' --set 'boundary=[{name: base, on: {y: 0.5}, fix: [x, y]}]' --set 'loads.tractions[0].on={body: b}'
+says err.txt "the sides of cells that bear it have 4 m, the surface of the shape 3.142 m" "0.785 times as large"
+
+# --- a body with a mesh of its own in a box: on its surface, wherever the grid's cells are ---
+cat >disk.geo <<'END'
+Point(1) = {0, 0, 0, 0.06}; Point(2) = {0.5, 0, 0, 0.06}; Point(3) = {0, 0.5, 0, 0.06};
+Line(1) = {1, 2}; Circle(2) = {2, 1, 3}; Line(3) = {3, 1}; Curve Loop(1) = {1, 2, 3}; Plane Surface(1) = {1};
+Physical Surface("d") = {1}; Physical Curve("arc") = {2};
+END
+cat >disk.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [0.75, 0.75]}, size: 0.125}
+bodies: [{name: d, mesh: disk.geo, points_per_cell: 3, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0.3}}
+boundary: [{name: left, on: {x: 0}, fix: [x]}, {name: base, on: {y: 0}, fix: [y]}]
+loads: {tractions: [{on: {body: d, boundary: arc}, value: [0, -1000]}]}
+measures: {base: {reaction: y, of: {boundary: base}}, xx: {stress: xx}, yy: {stress: yy}}
+END
+for basis in cell gimp bspline; do
+  turn
+  expect "an arc, $basis" 0 on_ranks $ranks "$talus" run disk.yaml --out run --force --set "basis={$basis: {}}"
+  near base 3 785.398 1 # a polygon
+  expect "a pressure, $basis" 0 on_ranks $ranks "$talus" run disk.yaml --out run --force --set "basis={$basis: {}}" --set 'loads={pressures: [{on: {body: d, boundary: arc}, value: 1000}]}'
+  near base 3 500 0.1
+  near xx 4 -1000 0.1
+  near yy 5 -1000 0.1
+done
+expect "in a ring" 0 "$talus" run disk.yaml --out run --force --set kinematics=axisymmetric --set 'loads={pressures: [{on: {body: d, boundary: arc}, value: 1000}]}'
+near base 3 785.398 0.2 # p pi R^2
+expect "by a place" 0 "$talus" run disk.yaml --out run --force --set 'loads.tractions[0].on={body: d, boundary: left}'
+near base 3 500 1e-3
+expect "no such group" 2 "$talus" check disk.yaml --set 'loads.tractions[0].on.boundary=ark'
+says err.txt "the body's mesh has no boundary or region named 'ark'" "did you mean 'arc'"
+
+# --- a surface between two bodies: whichever of both the mesh has first, a pressure pushes the one that is named ---
+cat >two.geo <<'END'
+DefineConstant[up = {0}];
+Point(1) = {0, 0, 0, 0.5}; Point(2) = {1, 0, 0, 0.5}; Point(3) = {1, 1, 0, 0.5}; Point(4) = {0, 1, 0, 0.5}; Point(5) = {1, 2, 0, 0.5}; Point(6) = {0, 2, 0, 0.5};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Line(5) = {3, 5}; Line(6) = {5, 6}; Line(7) = {6, 4};
+Curve Loop(1) = {1, 2, 3, 4}; Curve Loop(2) = {-3, 5, 6, 7};
+If (up) Plane Surface(1) = {2}; Plane Surface(2) = {1};
+Else Plane Surface(1) = {1}; Plane Surface(2) = {2}; EndIf
+Physical Surface("low") = {up ? 2 : 1}; Physical Surface("up") = {up ? 1 : 2}; Physical Curve("mid") = {3}; Physical Curve("base") = {1}; Physical Curve("left") = {4, 7};
+END
+cat >two.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 1}
+grid: {mesh: two.geo}
+bodies: [{name: low, region: low, points_per_cell: 1, material: m}, {name: up, region: up, points_per_cell: 1, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0}}
+boundary: [{name: left, on: {boundary: left}, fix: [x]}, {name: base, on: {boundary: base}, fix: [y]}]
+loads: {pressures: [{on: {body: low, boundary: mid}, value: 1000}]}
+measures: {base: {reaction: y, of: {boundary: base}}, yy: {stress: yy, of: {body: low}}}
+END
+for up in 0 1; do
+  turn
+  expect "pushes low, $up" 0 on_ranks $ranks "$talus" run two.yaml --out run --force --set grid.parameters.up=$up
+  near base 3 1000 0.1
+  near yy 4 -1000 0.1
+  expect "pushes up, $up" 0 on_ranks $ranks "$talus" run two.yaml --out run --force --set grid.parameters.up=$up --set 'loads.pressures[0].on.body=up'
+  near base 3 -1000 0.1
+  expect "neither, $up" 2 on_ranks $ranks "$talus" run two.yaml --out run --force --set grid.parameters.up=$up --set 'loads.pressures[0].on={boundary: mid}'
+  says err.txt "2 of these sides lie within the material" "on: {body: ..., boundary: mid}"
+  for kind in 'pressures: [{on: {boundary: mid}, value: 1000}]' 'tractions: [{on: {boundary: mid}, value: [0, -1000]}]'; do
+    expect "alone, $up" 0 on_ranks $ranks "$talus" run two.yaml --out run --force --set grid.parameters.up=$up --set "loads={$kind}" --set 'bodies=[{name: low, region: low, points_per_cell: 1, material: m}]'
+    near base 3 1000 0.1
+  done
+done
+finish
