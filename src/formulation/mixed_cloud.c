@@ -75,24 +75,41 @@ KERNEL void hold_pressure(const int dim, const WeakFormInput *in, const PetscInt
   if (out->values) out->values[((size_t)slot[I * w->nn + J] + 1) * size * size - 1] -= entry;
 }
 
-/* The point's part of the projection in its cell. */
-KERNEL void point_project(const int dim, const PetscBool hoop, const WeakFormInput *in, PetscInt cell, PetscReal hold,
-                          const PetscInt *slot, const CloudWork *w, WeakFormOutput *out)
+/* The corners of the point's cell, which are among its nodes. */
+typedef struct {
+  PetscInt at[CELL_MAX_NODES]; /* there */
+  PetscReal x[3 * CELL_MAX_NODES];
+} Corners;
+
+KERNEL void find_corners(const int dim, const WeakFormInput *in, PetscInt cell, const CloudWork *w, Corners *c)
 {
   const int corners = 1 << dim;
   const PetscInt *node = in->cell_node + cell * corners;
-  PetscInt at[CELL_MAX_NODES];
-  PetscReal radius[CELL_MAX_NODES], ring[CELL_MAX_NODES * CELL_MAX_NODES];
   for (int k = 0; k < corners; ++k) {
-    at[k] = 0;
-    while (w->node[at[k]] != node[k]) ++at[k];
-    radius[k] = in->x[node[k] * dim];
+    c->at[k] = 0;
+    while (w->node[c->at[k]] != node[k]) ++c->at[k];
+    for (int d = 0; d < dim; ++d) c->x[k * dim + d] = in->x[node[k] * dim + d];
   }
+}
+
+/* The point's part of the projection in its cell. */
+KERNEL void point_project(const int dim, const PetscBool hoop, const WeakFormInput *in, PetscInt p, PetscReal softness,
+                          const PetscInt *slot, const CloudWork *w, WeakFormOutput *out)
+{
+  const int corners = 1 << dim;
+  const PetscReal volume = in->points->real[POINT_VOLUME][p], mass = in->points->real[POINT_MASS][p];
+  const PetscReal scale = in->pressure_scale;
+  Corners c;
+  PetscReal radius[CELL_MAX_NODES], ring[CELL_MAX_NODES * CELL_MAX_NODES];
+  find_corners(dim, in, in->points->cell[p], w, &c);
+  const PetscReal hold = pressure_hold(softness, mass / volume, pressure_swiftness(dim, corners, c.x, in->inertia));
+  for (int k = 0; k < corners; ++k) radius[k] = c.x[k * dim];
   if (hoop) ring_projection(corners, radius, ring);
   for (int k = 0; k < corners; ++k)
     for (int l = 0; l < corners; ++l) {
-      const PetscReal share = hoop ? ring[k * corners + l] : projection_entry(dim, corners, k, l);
-      hold_pressure(dim, in, slot, w, at[k], at[l], hold * share, out);
+      const PetscReal share = hold * scale * (hoop ? ring[k * corners + l] : projection_entry(dim, corners, k, l));
+      if (out->volume) out->volume[w->node[c.at[k]]] -= share * mass * pressure_depth(dim, in->gravity, c.x + l * dim);
+      hold_pressure(dim, in, slot, w, c.at[k], c.at[l], share * volume * scale, out);
     }
 }
 
@@ -119,8 +136,7 @@ KERNEL void mixed_point(const int dim, const PetscBool hoop, const WeakFormInput
   for (PetscInt I = 0; out->volume && I < u->nn; ++I)
     out->volume[u->node[I]] += scaled * (b->s.theta[k] - b->p[k] * material->compliance) * u->N[I];
   if (u->soft > 0) cloud_hold(dim, in, u, out->force);
-  point_project(dim, hoop, in, in->points->cell[p], in->alpha / material->elastic.shear * volume * scale * scale,
-                out->slot + slot, u, out);
+  point_project(dim, hoop, in, p, in->alpha / material->elastic.shear, out->slot + slot, u, out);
   if (tie > 0) hold_cut(dim, in, tie * scale * scale, out->slot + slot, u, out);
   if (!out->values) return;
   for (int j = 0; j < gradient_rows(dim, hoop); ++j)

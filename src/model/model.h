@@ -175,6 +175,7 @@ typedef struct Model {
   PetscBool *option_set;    /* which of the case's PETSc options the model put into the database */
   PetscBool symmetric;      /* are all tangents symmetric? */
   PetscReal machine_memory; /* bytes: MemoryHeld */
+  PetscReal gravity[3];     /* of the step, m/s2 */
   PetscReal courant_speed;  /* largest sqrt(M / density), m/s */
   /* see Energies */
   PetscReal external_work, boundary_work, damped_energy, transfer_energy, friction_energy, numerical_energy;

@@ -26,6 +26,7 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
     .pressure = m->nodes->scaled_pressure,
     .pressure_scale = m->pressure_scale,
     .alpha = m->c->mixed.stabilisation,
+    .gravity = m->gravity,
     .pressure_tie = m->space->pressure_tie,
     .cell_node = m->grid->cell_node,
   };
@@ -225,7 +226,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   const PetscReal passes = m->initial.seeking ? 0 : dt;
   const PetscReal solved = time_solved(m->scheme), t = m->time + solved * passes;
   const PetscReal inertia = time_inertia(&weights, solved, m->c->analysis.damping);
-  PetscReal g[3];
+  PetscReal *g = m->gravity;
 
   PetscFunctionBeginUser;
   m->raised.border.factor = m->raised.factor; /* a try that failed has left another one, and other velocities */

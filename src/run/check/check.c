@@ -228,6 +228,28 @@ static void report_followers(const Model *m, FILE *out)
         (double)follow);
 }
 
+/* The fastest, those of pressure too where a pressure of its own bears them; HUGE_VAL in what is incompressible. */
+static PetscReal fastest_wave(const Model *m)
+{
+  PetscReal most = 0;
+  for (PetscInt i = 0; i < m->c->n_materials; ++i) {
+    const Material *material = m->materials + i;
+    const PetscReal modulus =
+      m->formulation->pressure && !(material->compliance > 0) ? HUGE_VAL : material_confined(material);
+    most = PetscMax(most, PetscSqrtReal(modulus / material->density));
+  }
+  return most;
+}
+
+static void report_waves(const Model *m, FILE *out)
+{
+  const PetscReal speed = fastest_wave(m), crossed = m->control.next / m->grid->smallest;
+  if (isfinite(speed))
+    say(m, out, "#   waves: %g m/s, %.3g cells in a step of %g s\n", (double)speed, (double)(speed * crossed),
+        (double)m->control.next);
+  else say(m, out, "#   waves: of pressure at once, since what is incompressible has no others\n");
+}
+
 static PetscErrorCode ReportSizes(Model *m, Diag *diag, FILE *out)
 {
   PetscInt points, pairs, all_pairs;
@@ -250,9 +272,7 @@ static PetscErrorCode ReportSizes(Model *m, Diag *diag, FILE *out)
   report_followers(m, out);
   say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
   report_memory(m, estimated_memory(m, points, unknowns, all_pairs), diag, out);
-  if (m->scheme->inertia)
-    say(m, out, "#   waves: %g m/s, %.3g cells in a step of %g s\n", (double)m->courant_speed,
-        (double)(m->courant_speed * m->control.next / m->grid->smallest), (double)m->control.next);
+  if (m->scheme->inertia) report_waves(m, out);
   PetscCall(ReportSubsteps(m, out));
   PetscFunctionReturn(0);
 }

@@ -148,7 +148,9 @@ static void warn_of_transfer(const Model *m, Diag *diag)
   if (implicit && m->space->transfer == transfers[0] && !materials_yield(m->c->n_materials, m->materials))
     diag_hint(
       diag,
-      "elastic bodies keep it with `analysis: {transfer: consistent, scheme: midpoint}` (docs/theory.md, Energy)");
+      m->formulation->pressure
+        ? "elastic bodies keep it with `analysis: {transfer: consistent}` (docs/theory.md, Energy)"
+        : "elastic bodies keep it with `analysis: {transfer: consistent, scheme: midpoint}` (docs/theory.md, Energy)");
   else if (implicit && m->space->transfer == transfers[0] && share < 0)
     diag_hint(diag,
               "steps much shorter than a wave takes through a cell make it: longer ones, or `analysis: {transfer: "
