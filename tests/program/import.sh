@@ -203,6 +203,15 @@ says fall/case.yaml "type: dynamic, end: 0.05, step: 0.01, mass: lumped, transfe
 expect "it falls" 0 "$talus" run fall/case.yaml
 says out.txt "4 of 4 within what is allowed"
 
+# Gravity and velocities are modulus times direction as it stands (and 1 where there is no modulus); a load's direction has length 1.
+cp -r falling thrown
+thrown=$(echo "$gravity" | sed 's/gravity_to_particle/initial_velocity_to_material_point/; s/"modulus": 10, "direction": .*\]/"direction": [2.0, 0.0, 0.0]/')
+{ settings Dynamic 0.01 0.05
+  echo "\"processes\": {\"gravity\": [$(echo "$gravity" | sed 's/-1.0/-3.0/')], \"start\": [$thrown], \"loads\": [$load]}}"
+} >thrown/throw.json
+expect "directions that are no unit vectors" 0 "$talus" import kratos thrown/throw.json --out throw
+says throw/case.yaml "gravity: [0, -30]" "velocity: [2, 0]" "on: {boundary: Right_hand_End}, value: [1, 0]"
+
 # What moves in dynamics moves by as much in each step: half of it after half of the time.
 both="$(along Wall 0.0), $(along Right-hand.End -0.001)"
 { settings Dynamic 0.01 0.04

@@ -101,14 +101,28 @@ static PetscErrorCode ReadFormula(KratosProject *p, const YamlNode *modulus, cha
   PetscFunctionReturn(0);
 }
 
-/* A modulus and a direction, as a vector. With a formula for its modulus it is the direction alone. */
+/* A direction as it stands, which may be no unit vector. */
+static void read_direction(KratosProject *p, const YamlNode *parameters, PetscReal modulus, PetscReal value[3])
+{
+  (void)kratos_vector(&p->parameters, parameters, "direction", value);
+  if (modulus != 0 && value[0] == 0 && value[1] == 0 && value[2] == 0)
+    kratos_refuse(&p->parameters, parameters, "a direction of three numbers, not all 0, is expected");
+}
+
+/* Gravity and velocities: Kratos multiplies the direction by the modulus as it stands. */
+static void read_product(KratosProject *p, const YamlNode *parameters, PetscReal value[3])
+{
+  const PetscReal modulus = kratos_number(&p->parameters, parameters, "modulus", 1);
+  read_direction(p, parameters, modulus, value);
+  for (int d = 0; d < 3; ++d) value[d] *= modulus;
+}
+
+/* Loads: Kratos divides the direction by its length. With a formula for its modulus it is the direction alone. */
 static void read_directed(KratosProject *p, const YamlNode *parameters, const char *factor, PetscReal value[3])
 {
   const PetscReal modulus = factor[0] ? 1 : kratos_number(&p->parameters, parameters, "modulus", 0);
-  (void)kratos_vector(&p->parameters, parameters, "direction", value);
+  read_direction(p, parameters, modulus, value);
   const PetscReal length = sqrt(value[0] * value[0] + value[1] * value[1] + value[2] * value[2]);
-  if (!(length > 0) && modulus != 0)
-    kratos_refuse(&p->parameters, parameters, "a direction of three numbers, not all 0, is expected");
   for (int d = 0; d < 3 && length > 0; ++d) value[d] *= modulus / length;
 }
 
@@ -148,7 +162,7 @@ static PetscErrorCode ReadGravity(KratosProject *p, const YamlNode *process, con
 {
   PetscFunctionBeginUser;
   (void)process;
-  read_directed(p, parameters, "", p->gravity);
+  read_product(p, parameters, p->gravity);
   PetscFunctionReturn(0);
 }
 
@@ -159,7 +173,7 @@ static PetscErrorCode ReadVelocity(KratosProject *p, const YamlNode *process, co
   PetscBool found = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  read_directed(p, parameters, "", velocity);
+  read_product(p, parameters, velocity);
   for (PetscInt b = 0; b < p->n_bodies; ++b) {
     if (strcmp(p->bodies[b].part, part) && strcmp(part, "MPM_Material")) continue;
     for (int d = 0; d < 3; ++d) p->bodies[b].velocity[d] = velocity[d];
