@@ -107,6 +107,8 @@ typedef struct Law {
   /* Tell the natural state where its point starts, m, before any initial stress, which keeps what this has set; NULL:
    * it is the same everywhere. */
   void (*place)(const PetscReal x[3], PetscReal *state);
+  /* Tell a state where its point is, m, before each step; NULL: the law does not ask. */
+  void (*moved)(const PetscReal x[3], PetscReal *state);
   /* Tell a state that initial_stress gave, or the natural one, the size of the cell in which its
    * point starts, m. NULL: the law has no length. */
   void (*size)(const PetscReal *parameters, PetscReal h, PetscReal *state);

@@ -52,6 +52,8 @@ PetscErrorCode NonlocalStep(Model *model);
 void sizes_start(const Model *model);
 /* Tell the laws that ask for it where their points start. */
 void places_start(const Model *model);
+/* The same before a step, of laws that ask where their points are now. */
+void places_step(const Model *model);
 /* Complain of methods, formulations, bases, time schemes and transfers that do not go together (start/supported.c). */
 void supported_check(const Model *model, Diag *diag);
 /* Complain where `stabilisation.room` means nothing (start/laws.c). */

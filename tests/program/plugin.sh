@@ -120,6 +120,45 @@ says err.txt "behind the file stand NPROPS" "--umat clay=./clay.so,6,3"
 expect "no umat" 2 "$talus" element sand.yaml --umat soil=voce.so,2,1
 says err.txt "has no subroutine UMAT (symbol umat_)" "is loaded by --law soil="
 
+# COORDS is where a point is at the start of the step, in dynamics too and behind a stress at the start; the run is one that
+# moves points from rank to rank.
+cat >moves.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, end: 0.5, step: 0.1}
+grid: {box: {min: [0, 0], max: [8, 2]}, size: 0.5}
+bodies: [{name: bar, shape: {box: {min: [1, 0], max: [3, 1]}}, material: soil, velocity: [8, 0], k0: 0.5}]
+materials: {soil: {law: soil, density: 1000, prop_1: 1e6, prop_2: 0.25}}
+boundary: [{on: {boundary: bottom}, fix: [y]}]
+loads: {gravity: [0, -10]}
+output: {fields: [velocity, statev_2, statev_3, statev_4], every: {steps: 1}}
+END
+for ranks in 1 2 3; do
+  expect "COORDS, $ranks ranks" 0 on_ranks $ranks "$talus" run moves.yaml --umat soil=elastic.so,2,4 --out moves$ranks --quiet
+  python3 -c 'import h5py, numpy' 2>/dev/null || continue
+  PYTHONPATH="$source/python" python3 - moves$ranks >out.txt 2>&1 <<'END' || fail "$name: $(tail -n 1 out.txt)"
+import sys, numpy, talus
+states = talus.Run(sys.argv[1]).states
+assert len(states) == 6
+for before, after in zip(states[:-1], states[1:]):
+    was = before.points.by_id("position")
+    told = numpy.column_stack([after.points.by_id(f"statev_{k}").ravel() for k in (2, 3, 4)])
+    assert abs(told[:, :2] - was[:, :2]).max() < 1e-12 and not told[:, 2].any(), abs(told[:, :2] - was[:, :2]).max()
+END
+done
+# In explicit dynamics it is that at the start of a stretch of substeps, here 0.06 m
+expect "COORDS, explicit" 0 "$talus" run moves.yaml --umat soil=elastic.so,2,4 --out quick --quiet --set analysis.type=explicit
+if python3 -c 'import h5py, numpy' 2>/dev/null; then
+  PYTHONPATH="$source/python" python3 - quick >out.txt 2>&1 <<'END' || fail "$name: $(tail -n 1 out.txt)"
+import sys, talus
+points = talus.Run(sys.argv[1]).states[-1].points
+behind = points["position"][:, 0] - points["statev_2"].ravel()
+assert behind.min() > 0 and behind.max() < 0.1, (behind.min(), behind.max())
+END
+fi
+expect "as many as there may be, and another one" 0 "$talus" check moves.yaml --umat soil=elastic.so,24,24 --umat clay=elastic.so,2,1 --set 'output.fields=[statev_24]' \
+  --set "materials.soil={law: soil, density: 1000$(awk 'BEGIN {for (k = 1; k <= 24; ++k) printf ", prop_%d: %g", k, k == 1 ? 1e6 : 0.25}')}"
+
 # One in Fortran: on its curve of hardening, Cauchy = k(alpha), strain = Cauchy / E + alpha; and SDVINI, by which strength is
 # that at y = 0 times 1 + y / 2: a slab 1 m high that flows everywhere takes 1.25 of 2 / sqrt(3) times its yield stress
 command -v gfortran >/dev/null || { echo "no gfortran: the subroutine in Fortran is not tried"; finish; }

@@ -18,7 +18,8 @@ typedef struct Plugin {
   Law law;
   LawParameter parameters[TALUS_LAW_MAX_PARAMETERS + 1];
   LawField fields[TALUS_LAW_MAX_STATE + 8];
-  char words[TALUS_LAW_MAX_PARAMETERS + TALUS_LAW_MAX_STATE][16]; /* names that a umat has none for */
+  /* names that a umat has none for: of PROPS, F, the place, STATEV */
+  char words[TALUS_LAW_MAX_PARAMETERS + 9 + 3 + UMAT_MOST_STATEV][16];
 } Plugin;
 
 /* One point. parameters: packed; c NULL: not wanted; old, state: the whole state. */

@@ -163,6 +163,11 @@ static void fill_umat(Plugin *g)
     snprintf(name, sizeof g->words[0], "umat_f_%c%c", axes[k / 3], axes[k % 3]);
     g->fields[n++] = (LawField){name, "", "deformation gradient", 1, {k % 4 == 0}};
   }
+  for (int k = 0; k < 3; ++k) {
+    char *name = g->words[w++];
+    snprintf(name, sizeof g->words[0], "umat_%c", axes[k]);
+    g->fields[n++] = (LawField){name, "m", "where the point is at the start of the step", 1, {0}};
+  }
   for (int k = 0; k < g->umat.n_statev; ++k) {
     char *name = g->words[w++];
     snprintf(name, sizeof g->words[0], "statev_%u", (unsigned)k % 100 + 1);

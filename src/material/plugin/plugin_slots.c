@@ -58,14 +58,15 @@ static PetscBool umat_stress(const Plugin *g, const PetscReal *q, const PetscRea
   return off <= 1e-10 * size ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* What SDVINI has made of STATEV stays. */
+/* The place of a subroutine's point, and what SDVINI has made of STATEV, stay. */
 static PetscBool initial_stress(const Plugin *g, const PetscReal *q, const PetscReal sigma[6], PetscReal *state)
 {
   PetscReal begun[LAW_MAX_STATE];
   const size_t own = g->umat.begin ? (size_t)g->own * sizeof *state : 0;
-  memcpy(begun, state + g->kept, own);
+  memcpy(begun, state, (size_t)g->law.n_state * sizeof *state);
   law_initial_state(&g->law, state);
-  memcpy(state + g->kept, begun, own);
+  memcpy(state + g->kept, begun + g->kept, own);
+  if (g->umat.call) memcpy(state + UMAT_PLACE, begun + UMAT_PLACE, 3 * sizeof *state);
   if (g->user.update_strain) return plugin_strain_stress(g, q, PETSC_TRUE, sigma, state);
   if (g->umat.call) return umat_stress(g, q, sigma, state);
   return g->user.initial_stress(q + PLUGIN_STEP, sigma, state) ? PETSC_TRUE : PETSC_FALSE;
@@ -93,6 +94,10 @@ static void prepare(const Plugin *g, const Elasticity *elastic, const PetscReal 
   for (PetscInt k = 0; k < g->given; ++k) packed[n++] = given[k];
 }
 
+static void place(const Plugin *g, const PetscReal x[3], PetscReal *state) { umat_begin(&g->umat, x, state); }
+
+static void moved(const PetscReal x[3], PetscReal *state) { memcpy(state + UMAT_PLACE, x, 3 * sizeof *state); }
+
 /* Those that the law tells, or what its tangent at rest has. */
 static void elastic(const Plugin *g, const PetscReal *given, PetscReal bulk_and_shear[2])
 {
@@ -105,7 +110,7 @@ static void elastic(const Plugin *g, const PetscReal *given, PetscReal bulk_and_
   }
   prepare(g, NULL, given, q);
   law_initial_state(&g->law, old);
-  if (g->umat.begin) umat_begin(&g->umat, (PetscReal[]){0.0, 0.0, 0.0}, old);
+  if (g->umat.call) place(g, (PetscReal[]){0.0, 0.0, 0.0}, old);
   if (update(g, q, 1, identity, old, state, tau, c) != LAW_OK) return;
   bulk_and_shear[1] = c[6 * 3 + 3];
   bulk_and_shear[0] = c[0] - 4.0 / 3.0 * c[6 * 3 + 3];
@@ -173,7 +178,7 @@ static void step(PetscReal time, PetscReal dt, PetscReal *q)
   {                                                                                                                 \
     reduce(&plugins[k], given, f, less);                                                                            \
   }                                                                                                                 \
-  static void place_##k(const PetscReal x[3], PetscReal *state) { umat_begin(&plugins[k].umat, x, state); }         \
+  static void place_##k(const PetscReal x[3], PetscReal *state) { place(&plugins[k], x, state); }                   \
   static const char *check_##k(const PetscReal *given) { return check(&plugins[k], given); }
 
 SLOT(0)
@@ -189,7 +194,7 @@ SLOT(7)
   {                                                                                                                   \
     .yields = PETSC_TRUE, .update = update_##k, .energy = energy_##k, .initial_stress = initial_stress_##k,           \
     .bear = bear_##k, .elastic = elastic_##k, .prepare = prepare_##k, .volume = volume_##k, .volume_law = volume_law, \
-    .scale = scale_##k, .reduce = reduce_##k, .check = check_##k, .place = place_##k, .step = step                    \
+    .scale = scale_##k, .reduce = reduce_##k, .check = check_##k, .place = place_##k, .moved = moved, .step = step    \
   }
 
 static const Law tables[PLUGIN_MOST] = {TABLE(0), TABLE(1), TABLE(2), TABLE(3), TABLE(4), TABLE(5), TABLE(6), TABLE(7)};
@@ -211,6 +216,6 @@ void plugin_fill(PetscInt slot)
   if (!strains && !g->umat.call && !g->user.initial_stress) g->law.initial_stress = NULL;
   if (!strains && !g->umat.call) g->law.bear = NULL;
   if (!g->user.energy) g->law.energy = NULL;
-  if (!g->umat.begin) g->law.place = NULL;
+  if (!g->umat.call) g->law.place = g->law.moved = NULL;
   if (!g->user.reduce) g->law.reduce = NULL;
 }

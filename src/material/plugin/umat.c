@@ -61,17 +61,17 @@ static void to_columns(const PetscReal a[9], double out[9])
 
 /* What the subroutine reads and writes. */
 typedef struct {
-  double stress[6], ddsdde[36], stran[6], dstran[6], drot[9], f0[9], f1[9], time[2], dt, pnewdt;
+  double stress[6], ddsdde[36], stran[6], dstran[6], drot[9], f0[9], f1[9], coords[3], time[2], dt, pnewdt;
 } Call;
 
 static PetscBool run(const Umat *u, const double *props, double *statev, Call *call)
 {
   const int three = 3, six = 6, one = 1;
-  double energies[3] = {0}, zero = 0.0, none[6] = {0}, more[6] = {0}, coords[3] = {0}, celent = 1.0;
+  double energies[3] = {0}, zero = 0.0, none[6] = {0}, more[6] = {0}, fields[3] = {0}, celent = 1.0;
   u->call(call->stress, statev, call->ddsdde, &energies[0], &energies[1], &energies[2], &zero, none, more, &zero,
-          call->stran, call->dstran, call->time, &call->dt, coords, coords, coords, coords, u->name, &three, &three,
-          &six, &u->n_statev, props, &u->n_props, coords, call->drot, &call->pnewdt, &celent, call->f0, call->f1, &one,
-          &one, &one, &one, &one, &one, sizeof u->name);
+          call->stran, call->dstran, call->time, &call->dt, fields, fields, fields, fields, u->name, &three, &three,
+          &six, &u->n_statev, props, &u->n_props, call->coords, call->drot, &call->pnewdt, &celent, call->f0, call->f1,
+          &one, &one, &one, &one, &one, &one, sizeof u->name);
   return call->pnewdt >= 1.0;
 }
 
@@ -147,6 +147,7 @@ static void tell(const Polar *p, PetscReal time, PetscReal dt, const PetscReal *
   to_columns(p->R, call->drot);
   to_columns(old + GRADIENT, call->f0);
   to_columns(F, call->f1);
+  memcpy(call->coords, old + UMAT_PLACE, sizeof call->coords);
   call->time[0] = call->time[1] = time;
   call->dt = dt;
   call->pnewdt = 1.0;
@@ -155,6 +156,8 @@ static void tell(const Polar *p, PetscReal time, PetscReal dt, const PetscReal *
 void umat_begin(const Umat *u, const PetscReal x[3], PetscReal *state)
 {
   const int three = 3, one = 1;
+  memcpy(state + UMAT_PLACE, x, 3 * sizeof *state);
+  if (!u->begin) return;
   memset(state + UMAT_KEPT, 0, (size_t)u->n_statev * sizeof *state);
   u->begin(state + UMAT_KEPT, x, &u->n_statev, &three, &one, &one, &one, &one);
 }
@@ -181,6 +184,7 @@ LawStatus umat_point(const Umat *u, const PetscReal *props, PetscReal time, Pets
     sum += fabs(tau[k]);
   }
   memcpy(state + GRADIENT, F, sizeof F);
+  memcpy(state + UMAT_PLACE, old + UMAT_PLACE, 3 * sizeof *state);
   if (!isfinite(sum)) return LAW_NOT_FINITE;
   if (c) tangent(&p, &call, J, sigma, tau, c);
   return LAW_OK;

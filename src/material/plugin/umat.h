@@ -1,12 +1,13 @@
 /* Subroutines that follow the calling convention UMAT, which many laws of soils are written for
  * (docs/theory.md, "Laws of one's own").
  *
- * State: Cauchy stress and logarithmic strain, which turn along with the material, F, STATEV. */
+ * State: Cauchy stress and logarithmic strain, which turn along with the material, F, the place, STATEV. */
 #pragma once
 #include <stddef.h>
 #include "material/law.h"
 
-#define UMAT_KEPT 21 /* stress 6, strain 6, F 9 */
+#define UMAT_PLACE 21
+#define UMAT_KEPT 24 /* stress 6, strain 6, F 9, place 3 */
 #define UMAT_MOST_STATEV 24
 
 /* As Fortran passes them; the last is the length of cmname, which Fortran adds. */
@@ -30,7 +31,7 @@ typedef struct {
   char name[80]; /* CMNAME, blanks behind */
 } Umat;
 
-/* What SDVINI makes of STATEV at the place x (m) where a point starts, from 0. */
+/* A point starts at x, m: what SDVINI makes of STATEV there, from 0. */
 void umat_begin(const Umat *umat, const PetscReal x[3], PetscReal *state);
 /* One point. props: those of the case; time, dt: of the step; c NULL: not wanted. */
 LawStatus umat_point(const Umat *umat, const PetscReal *props, PetscReal time, PetscReal dt, const PetscReal dF[9],

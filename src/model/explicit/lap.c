@@ -214,6 +214,7 @@ PetscErrorCode LapBegin(Model *m, Explicit *e, PetscReal left)
   e->loaded = is_loaded(m);
   e->box = e->box && !asks_for_all(m); /* a body force may have come since */
   PetscCall(See(m, e));
+  places_step(m);
   if (e->critical == 0 || e->since >= LAP_MOST) {
     PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
     PetscCall(NonlocalStep(m)); /* with a clock of its own */

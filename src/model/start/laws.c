@@ -15,13 +15,32 @@ static PetscReal cell_size(const Grid *grid, PetscInt cell)
   return pow(parts * cell_volume(type, x), 1.0 / (PetscReal)grid->dim);
 }
 
+static void place_of(const Model *m, PetscInt p, PetscReal x[3])
+{
+  for (PetscInt d = 0; d < 3; ++d) x[d] = d < m->dim ? point_real(m->points, POINT_X, p)[d] : 0;
+}
+
 void places_start(const Model *m)
 {
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const Law *law = m->materials[m->points->material[p]].law;
-    PetscReal x[3] = {0, 0, 0};
-    for (PetscInt d = 0; d < m->dim; ++d) x[d] = point_real(m->points, POINT_X, p)[d];
-    if (law->place) law->place(x, point_real(m->points, POINT_STATE, p));
+    PetscReal x[3];
+    if (!law->place) continue;
+    place_of(m, p, x);
+    law->place(x, point_real(m->points, POINT_STATE, p));
+  }
+}
+
+void places_step(const Model *m)
+{
+  PetscBool asked = PETSC_FALSE;
+  for (PetscInt i = 0; i < m->c->n_materials; ++i) asked |= m->materials[i].law->moved != NULL;
+  for (PetscInt p = 0; p < m->points->n && asked; ++p) {
+    const Law *law = m->materials[m->points->material[p]].law;
+    PetscReal x[3];
+    if (!law->moved) continue;
+    place_of(m, p, x);
+    law->moved(x, point_real(m->points, POINT_STATE, p));
   }
 }
 

@@ -1,12 +1,13 @@
 /* A subroutine UMAT as gfortran would compile it: linear elasticity, PROPS = E, nu; STATEV(1) counts the calls that
- * reached this state. */
+ * reached this state, STATEV(2) to (4) are COORDS if there is room. */
 #include <stddef.h>
 #define FORTRAN const void *
 
 void umat_(double *stress, double *statev, double *ddsdde, FORTRAN sse, FORTRAN spd, FORTRAN scd, FORTRAN rpl,
            FORTRAN ddsddt, FORTRAN drplde, FORTRAN drpldt, FORTRAN stran, const double *dstran, FORTRAN time,
            FORTRAN dtime, FORTRAN temp, FORTRAN dtemp, FORTRAN predef, FORTRAN dpred, FORTRAN cmname, const int *ndi,
-           const int *nshr, const int *ntens, const int *nstatv, const double *props, const int *nprops)
+           const int *nshr, const int *ntens, const int *nstatv, const double *props, const int *nprops,
+           const double *coords)
 {
   const double lambda = props[0] * props[1] / ((1 + props[1]) * (1 - 2 * props[1])),
                mu = props[0] / (2 * (1 + props[1]));
@@ -19,4 +20,5 @@ void umat_(double *stress, double *statev, double *ddsdde, FORTRAN sse, FORTRAN 
       stress[i] += d * dstran[j];
     }
   if (*nstatv > 0) statev[0] += 1;
+  for (int d = 0; d < 3 && *nstatv > 3; ++d) statev[1 + d] = coords[d];
 }
