@@ -159,6 +159,14 @@ fi
 expect "as many as there may be, and another one" 0 "$talus" check moves.yaml --umat soil=elastic.so,24,24 --umat clay=elastic.so,2,1 --set 'output.fields=[statev_24]' \
   --set "materials.soil={law: soil, density: 1000$(awk 'BEGIN {for (k = 1; k <= 24; ++k) printf ", prop_%d: %g", k, k == 1 ? 1e6 : 0.25}')}"
 
+# A subroutine that ends the process in the middle: that is said, and is no success
+build ends.so -DENDS=200 "$source/tests/material/plugins/umat_elastic.c"
+for ranks in 1 2 3; do
+  expect "STOP, $ranks ranks" 1 on_ranks $ranks "$talus" run moves.yaml --umat soil=./ends.so,2,4 --out ends$ranks --quiet
+  says err.txt "error: the library of the law soil has ended the program in the middle" "hint: STOP in Fortran"
+  [ -s ends$ranks/case.yaml ] || fail "$name: it ended before the run"
+done
+
 # One in Fortran: on its curve of hardening, Cauchy = k(alpha), strain = Cauchy / E + alpha; and SDVINI, by which strength is
 # that at y = 0 times 1 + y / 2: a slab 1 m high that flows everywhere takes 1.25 of 2 / sqrt(3) times its yield stress
 command -v gfortran >/dev/null || { echo "no gfortran: the subroutine in Fortran is not tried"; finish; }

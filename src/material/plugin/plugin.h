@@ -34,6 +34,10 @@ PetscBool plugin_strain_stress(const Plugin *plugin, const PetscReal *parameters
 /* Logarithmic strain of b. */
 void plugin_strain_of(const PetscReal b[6], PetscReal strain[6]);
 
+/* The law whose library has been called and has not come back (plugin_guard.c); NULL: none. */
+extern const Plugin *volatile plugin_busy;
+/* Once: should a library end the process, that is said, and the exit code is not that of success. */
+void plugin_watch(void);
 /* Fill in the law of a slot from its library (user or umat, name). */
 void plugin_fill(PetscInt slot);
 extern Plugin plugins[PLUGIN_MOST];

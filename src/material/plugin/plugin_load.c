@@ -289,6 +289,7 @@ PetscErrorCode PluginLoad(const char *spec, PetscBool umat, Diag *diag)
   PetscCall(PetscMemzero(g, sizeof *g));
   if (!load(g, spec, umat, diag) || !offer_fields(g, diag)) PetscFunctionReturn(0);
   plugin_fill(n_plugins);
+  plugin_watch();
   law_register(&g->law);
   words[n_plugins++] = g->spec;
   PetscFunctionReturn(0);

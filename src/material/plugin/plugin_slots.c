@@ -13,8 +13,11 @@ static LawStatus worked(const Plugin *g, const PetscReal *q, const PetscReal dF[
   const PetscReal det = tensor_det(dF);
   if (!isfinite(det)) return LAW_NOT_FINITE;
   if (det <= 0.0) return LAW_INVERTED;
-  if (g->user.update_strain) return plugin_strain_point(g, q, dF, old, state, tau, c);
-  return plugin_gradient_point(g, q, dF, old, state, tau, c);
+  plugin_busy = g;
+  const LawStatus status = g->user.update_strain ? plugin_strain_point(g, q, dF, old, state, tau, c)
+                                                 : plugin_gradient_point(g, q, dF, old, state, tau, c);
+  plugin_busy = NULL;
+  return status;
 }
 
 /* Points that failed keep their state and carry no stress. */
@@ -94,7 +97,12 @@ static void prepare(const Plugin *g, const Elasticity *elastic, const PetscReal 
   for (PetscInt k = 0; k < g->given; ++k) packed[n++] = given[k];
 }
 
-static void place(const Plugin *g, const PetscReal x[3], PetscReal *state) { umat_begin(&g->umat, x, state); }
+static void place(const Plugin *g, const PetscReal x[3], PetscReal *state)
+{
+  plugin_busy = g;
+  umat_begin(&g->umat, x, state);
+  plugin_busy = NULL;
+}
 
 static void moved(const PetscReal x[3], PetscReal *state) { memcpy(state + UMAT_PLACE, x, 3 * sizeof *state); }
 
