@@ -55,13 +55,13 @@ static LawStatus update(const DrivePoint *old, DrivePoint *point, PetscReal tau[
 PetscBool drive_start(DrivePoint *p, Material *material, const PetscReal stress[6], PetscReal pore)
 {
   PetscReal tau[6], c[36], norm2 = 0, work = 0;
-  DrivePoint start = {.material = material, .pore = pore, .J = 1};
+  DrivePoint start = {.material = material, .pore = pore, .J = 1}, asked = start;
   for (int k = 0; k < 6; ++k) norm2 += stress[k] * stress[k];
   law_initial_state(material->law, start.state);
   if (material->law->place) material->law->place((PetscReal[]){0, 0, 0}, start.state);
   if (norm2 > 0 && !material->law->initial_stress(material->parameters, stress, start.state)) return PETSC_FALSE;
   *p = start;
-  if (update(&start, p, tau, c) != LAW_OK) return PETSC_FALSE;
+  if (update(&start, &asked, tau, c) != LAW_OK) return PETSC_FALSE; /* no increment: its state is none */
   for (int k = 0; k < 6; ++k) work += tau[k] * stress[k];
   if (norm2 > 0) p->J = work / norm2;
   for (int k = 0; k < 6; ++k) p->stress[k] = tau[k] / p->J;
