@@ -109,18 +109,15 @@ static PetscErrorCode CheckSelection(const Boundary *b, const Grid *grid, PetscI
 {
   const Selector *on = &b->c->boundary[entry].on;
   PetscInt local = b->motion[entry].n, all;
+  PetscBool good = PETSC_TRUE;
   char path[64], from[64], to[64];
 
   PetscFunctionBeginUser;
   PetscCall(MPIU_Allreduce(&local, &all, 1, MPIU_INT, MPI_SUM, grid->comm));
-  if (on->boundary && !grid_find_set(grid, on->boundary)) {
-    const char **names;
-    PetscCall(PetscSNPrintf(path, sizeof path, "boundary[%d].on.boundary", (int)entry));
-    PetscCall(GridSetNames(grid, &names));
-    diag_error(diag, path, "the grid has no boundary or region named '%s'", on->boundary);
-    diag_hint_names(diag, on->boundary, names);
-    PetscCall(PetscFree(names));
-  } else if (!all) {
+  if (all) PetscFunctionReturn(0);
+  PetscCall(PetscSNPrintf(path, sizeof path, "boundary[%d].on.boundary", (int)entry));
+  if (on->boundary) PetscCall(GridCheckBoundary(grid, on->boundary, path, diag, &good));
+  if (good) {
     PetscCall(PetscSNPrintf(path, sizeof path, "boundary[%d].on", (int)entry));
     boundary_place(b->dim, grid->min, from);
     boundary_place(b->dim, grid->max, to);

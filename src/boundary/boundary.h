@@ -85,5 +85,5 @@ void boundary_place(PetscInt dim, const PetscReal *x, char text[64]);
  * several entries prescribe is that of one of them alone (Boundary.entry). */
 PetscErrorCode BoundarySum(const Boundary *boundary, const Grid *grid, PetscInt entry, const PetscReal *force,
                            PetscReal sum[3]);
-/* Collective. Does the entry bear anything (Boundary.entry)? */
+/* Collective. Does the entry bear anything (Boundary.entry), or has it no nodes at all? */
 PetscErrorCode BoundaryHasOwn(const Boundary *boundary, const Grid *grid, PetscInt entry, PetscBool *has);

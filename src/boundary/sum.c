@@ -105,13 +105,16 @@ PetscErrorCode BoundarySum(const Boundary *b, const Grid *grid, PetscInt entry, 
 
 PetscErrorCode BoundaryHasOwn(const Boundary *b, const Grid *grid, PetscInt entry, PetscBool *has)
 {
+  PetscBool own = PETSC_FALSE, any[2];
+
   PetscFunctionBeginUser;
-  *has = PETSC_FALSE;
   for (PetscInt k = 0; k < b->motion[entry].n; ++k) {
     const PetscInt node = b->motion[entry].node[k];
-    for (PetscInt d = 0; d < b->dim && node < grid->n_owned; ++d) *has |= b->entry[node * b->dim + d] == entry;
+    for (PetscInt d = 0; d < b->dim && node < grid->n_owned; ++d) own |= b->entry[node * b->dim + d] == entry;
   }
-  for (PetscInt s = 0; s < b->n_sides; ++s) *has |= b->sides[s].entry == entry;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, has, 1, MPIU_BOOL, MPI_LOR, grid->comm));
+  for (PetscInt s = 0; s < b->n_sides; ++s) own |= b->sides[s].entry == entry;
+  any[0] = own, any[1] = b->motion[entry].n > 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, any, 2, MPIU_BOOL, MPI_LOR, grid->comm));
+  *has = any[0] || !any[1];
   PetscFunctionReturn(0);
 }

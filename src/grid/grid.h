@@ -94,6 +94,8 @@ PetscErrorCode GridFromPartition(const Grid *old, const Table *table, Grid **gri
 const GridSet *grid_find_set(const Grid *grid, const char *name);
 /* Names of all sets, NULL-terminated, to be freed with PetscFree (not the names). */
 PetscErrorCode GridSetNames(const Grid *grid, const char ***names);
+/* Collective. Is the name that of a boundary? If not, an error at path, with those that there are. */
+PetscErrorCode GridCheckBoundary(const Grid *grid, const char *name, const char *path, Diag *diag, PetscBool *good);
 
 /* Local nodes that the selector takes (sorted). With no condition at all: the whole outer
  * boundary. */

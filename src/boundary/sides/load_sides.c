@@ -82,24 +82,9 @@ static PetscBool material_may_come(const Case *c, const LoadSpec *load, PetscBoo
   return (PetscBool)(fills && load->kind == LOAD_TRACTION);
 }
 
-/* Names that `on.boundary` may be: of the grid, or of the body's own mesh. */
-static PetscErrorCode TellUnknown(const Grid *named, const char *path, const char *of, const Selector *on, Diag *diag)
-{
-  char key[96];
-  const char **names;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(key, sizeof key, "%s.boundary", path));
-  PetscCall(GridSetNames(named, &names));
-  diag_error(diag, key, "%s has no boundary or region named '%s'", of, on->boundary);
-  diag_hint_names(diag, on->boundary, names);
-  PetscCall(PetscFree(names));
-  PetscFunctionReturn(0);
-}
-
-/* On a body: is its own mesh without that name? */
-static PetscErrorCode TellOwnMesh(const Grid *grid, const Case *c, const char *path, const Selector *on, Diag *diag,
-                                  PetscBool *told)
+/* On a body: is the name that of a boundary of its own mesh, or at least of the grid? */
+static PetscErrorCode CheckOwnMesh(const Grid *grid, const Case *c, const Selector *on, const char *path, Diag *diag,
+                                   PetscBool *good)
 {
   Grid *own = NULL;
   Diag *again; /* what is wrong with the mesh has been said */
@@ -108,33 +93,28 @@ static PetscErrorCode TellOwnMesh(const Grid *grid, const Case *c, const char *p
   PetscCall(DiagCreate(&again));
   PetscCall(BodyMeshCreate(grid->comm, c, case_body(c, on->body), again, &own));
   PetscCall(DiagDestroy(&again));
-  *told = (PetscBool)(own && !grid_find_set(own, on->boundary) && !grid_find_set(grid, on->boundary));
-  if (*told) PetscCall(TellUnknown(own, path, "the body's mesh", on, diag));
+  if (own && !grid_find_set(grid, on->boundary)) PetscCall(GridCheckBoundary(own, on->boundary, path, diag, good));
   PetscCall(GridDestroy(&own));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode TellName(const Grid *grid, const Case *c, const char *path, const Selector *on, PetscBool fills,
-                               Diag *diag, PetscBool *told)
+static PetscErrorCode CheckName(const Grid *grid, const Case *c, const Selector *on, PetscBool fills, const char *path,
+                                Diag *diag, PetscBool *good)
 {
   const Bearer bearer = on->body ? body_bearer(c->bodies + case_body(c, on->body), fills) : BORNE_BY_CELLS;
+  char key[96];
 
   PetscFunctionBeginUser;
-  *told = PETSC_FALSE;
+  *good = PETSC_TRUE;
   if (!on->boundary) PetscFunctionReturn(0);
-  if (bearer == BORNE_BY_MESH) {
-    PetscCall(TellOwnMesh(grid, c, path, on, diag, told));
-  } else if (!grid_find_set(grid, on->boundary)) {
-    PetscCall(TellUnknown(grid, path, "the grid", on, diag));
-    *told = PETSC_TRUE;
-  } else if (bearer == BORNE_BY_SHAPE && !grid->box) {
-    char key[96];
-    PetscCall(PetscSNPrintf(key, sizeof key, "%s.boundary", path));
-    diag_error(diag, key, "'%s' cuts the cells of the mesh with its shape, whose surface has no boundaries with names",
-               on->body);
-    diag_hint(diag, "say where it is: x, y, z or shape");
-    *told = PETSC_TRUE;
-  }
+  PetscCall(PetscSNPrintf(key, sizeof key, "%s.boundary", path));
+  if (bearer == BORNE_BY_MESH) PetscCall(CheckOwnMesh(grid, c, on, key, diag, good));
+  else PetscCall(GridCheckBoundary(grid, on->boundary, key, diag, good));
+  if (!*good || bearer != BORNE_BY_SHAPE || grid->box) PetscFunctionReturn(0);
+  *good = PETSC_FALSE;
+  diag_error(diag, key, "'%s' cuts the cells of the mesh with its shape, whose surface has no boundaries with names",
+             on->body);
+  diag_hint(diag, "say where it is: x, y, z or shape");
   PetscFunctionReturn(0);
 }
 
@@ -143,11 +123,11 @@ static PetscErrorCode TellNoFace(const Grid *grid, const Case *c, PetscInt load,
 {
   const Selector *on = &c->loads[load].on;
   PetscInt n, any, *cell, *side;
-  PetscBool told;
+  PetscBool good;
 
   PetscFunctionBeginUser;
-  PetscCall(TellName(grid, c, path, on, fills, diag, &told));
-  if (told) PetscFunctionReturn(0);
+  PetscCall(CheckName(grid, c, on, fills, path, diag, &good));
+  if (!good) PetscFunctionReturn(0);
   PetscCall(GridSelectFaces(grid, on, &n, &cell, &side));
   PetscCall(MPIU_Allreduce(&n, &any, 1, MPIU_INT, MPI_SUM, grid->comm));
   if (!on->body && any) tell_empty(c, PETSC_FALSE, path, diag);
