@@ -98,5 +98,45 @@ for ranks in 1 3; do
   expect "share nodes, $ranks" 2 on_ranks $ranks "$talus" run case.yaml --out shared --force --quiet \
     --set "grid.parameters={shared: 1}" --set method=$method
   says err.txt "share nodes of the mesh: the line between them must be there twice"
+  lacks err.txt "goes through"
 done
+
+# Two cubes of tetrahedra that share the nodes between them, in an uneven mesh: that alone is told. What does go through
+# another body, in space, is told with three coordinates.
+awk -v n=3 'BEGIN {
+  m = n + 1
+  print "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n3 1 \"low\"\n3 2 \"up\"\n$EndPhysicalNames\n$Nodes\n" m * m * (2 * n + 1)
+  for (k = 0; k <= 2 * n; ++k) for (j = 0; j < m; ++j) for (i = 0; i < m; ++i) {
+    ++node
+    print node, (i + (i && i < n) * sin(7 * node) / 4) / n, (j + (j && j < n) * sin(11 * node) / 4) / n, (k + (k && k < n) * sin(5 * node) / 4) / n
+  }
+  print "$EndNodes\n$Elements\n" 12 * n ^ 3
+  split("1 3 3 2 2 6 6 4 4 5 5 1", way, " ")
+  for (k = 0; k < 2 * n; ++k) for (j = 0; j < n; ++j) for (i = 0; i < n; ++i) {
+    a = 1 + i + m * (j + m * k); s[1] = a + 1; s[2] = a + m; s[3] = a + m + 1; s[4] = a + m * m; s[5] = s[4] + 1; s[6] = s[4] + m
+    for (t = 1; t < 12; t += 2) print ++e, 4, 2, 1 + (k >= n), 1 + (k >= n), a, s[way[t]], s[way[t + 1]], s[6] + 1
+  }
+  print "$EndElements"
+}' >tied.msh
+cat >tied.yaml <<'END'
+kinematics: 3d
+method: fem
+analysis: {type: static, steps: 1}
+grid: {mesh: tied.msh}
+bodies:
+  - {name: low, region: low, points_per_cell: 4, material: rubber}
+  - {name: up, region: up, points_per_cell: 4, material: rubber}
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{on: {z: 0}, fix: [x, y, z]}]
+interfaces: [{name: joint, between: [low, up], friction: 0.3}]
+END
+for ranks in 1 3; do
+  expect "tied, $ranks" 2 on_ranks $ranks "$talus" run tied.yaml --out tied --force --quiet
+  says err.txt "share nodes of the mesh: the surface between them must be there twice"
+  lacks err.txt "goes through"
+done
+expect "in each other" 2 "$talus" check tied.yaml --set method=mpm --set 'grid={box: {min: [0, 0, 0], max: [1, 1, 2]}, size: 0.5}' \
+  --set 'bodies=[{name: low, shape: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, material: rubber}, {name: up, shape: {box: {min: [0, 0, 0.5], max: [1, 1, 2]}}, material: rubber}]'
+says err.txt "'low' goes through 'up' at the start"
+grep -q "its point at ([^,]*, [^,]*, [^,]*) m is" err.txt || fail "$name: $(grep point err.txt)"
 finish

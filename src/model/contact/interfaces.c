@@ -2,6 +2,7 @@
 #include <string.h>
 #include "model/model_private.h"
 #include "base/math/vector.h"
+#include "base/text.h"
 #include "grid/cloud/cloud.h"
 #include "solve/contact/surface/surface.h"
 
@@ -50,15 +51,20 @@ static PetscErrorCode SharingPairs(const Model *m, int *share)
   PetscFunctionReturn(0);
 }
 
-/* Bodies of one mesh have fields of their own where they share no node. */
-static void check_nodes(const Model *m, const int *share, Diag *diag)
+/* Bodies of one mesh have fields of their own where they share no node: a pair that does, -1 if there is none. */
+static PetscInt tied_pair(const Model *m, const int *share)
 {
   const PetscInt bodies = m->c->n_bodies;
   PetscInt pair = bodies * bodies - 1;
   PetscBool first;
-  if (m->grid->n_fields > 1) return;
+  if (m->grid->n_fields > 1) return -1;
   while (pair >= 0 && !(share[pair] && case_interface(m->c, pair / bodies, pair % bodies, &first) >= 0)) --pair;
-  if (pair < 0) return;
+  return pair;
+}
+
+static void tell_tied(const Model *m, PetscInt pair, Diag *diag)
+{
+  const PetscInt bodies = m->c->n_bodies;
   diag_error(diag, "interfaces", "'%s' and '%s' share nodes of the mesh: the %s between them must be there twice",
              m->c->bodies[pair / bodies].name, m->c->bodies[pair % bodies].name, m->dim == 2 ? "line" : "surface");
 }
@@ -170,7 +176,7 @@ static PetscErrorCode FitInterface(Model *m, const SurfaceInput *in, const Petsc
   PetscReal deepest = 0, all = 0, changed = PETSC_MAX_REAL;
   LostPoint worst = {0};
   Surface body[2];
-  char path[64];
+  char path[64], at[80];
 
   PetscFunctionBeginUser;
   for (int pass = 0; pass < FITTINGS && all == 0 && changed > FITS * m->grid->smallest; ++pass) {
@@ -182,8 +188,8 @@ static PetscErrorCode FitInterface(Model *m, const SurfaceInput *in, const Petsc
   }
   if (all == 0 || deepest > all) PetscFunctionReturn(0);
   snprintf(path, sizeof path, "interfaces[%d]", (int)k);
-  diag_error(diag, path, "'%s' goes through '%s' at the start: its point at (%g, %g) m is %.3g m inside", s->between[0],
-             s->between[1], (double)worst.x[0], (double)worst.x[1], (double)-deepest);
+  diag_error(diag, path, "'%s' goes through '%s' at the start: its point at %s m is %.3g m inside", s->between[0],
+             s->between[1], text_position(m->dim, worst.x, at), (double)-deepest);
   diag_hint(diag, "of a body that stands around the other one, name it first: `between: [%s, %s]`", s->between[1],
             s->between[0]);
   PetscFunctionReturn(0);
@@ -258,10 +264,11 @@ PetscErrorCode InterfacesStart(Model *m, Diag *diag)
   if (!rank) check_twice(m->c, diag);
   PetscCall(PetscCalloc1(m->c->n_bodies * m->c->n_bodies, &share));
   PetscCall(SharingPairs(m, share));
-  if (!rank) check_nodes(m, share, diag);
+  const PetscInt tied = tied_pair(m, share);
+  if (tied >= 0 && !rank) tell_tied(m, tied, diag);
   PetscCall(PetscMalloc1(6 * m->c->n_bodies, &bounds));
   PetscCall(SurfaceBounds(&in, m->c->n_bodies, bounds));
-  for (PetscInt k = 0; k < m->c->n_interfaces; ++k) PetscCall(FitInterface(m, &in, bounds, k, diag));
+  for (PetscInt k = 0; k < m->c->n_interfaces && tied < 0; ++k) PetscCall(FitInterface(m, &in, bounds, k, diag));
   if (m->method->clouds) PetscCall(WarnOfStrangers(m, &in, bounds, share, diag));
   PetscCall(PetscFree(bounds));
   PetscCall(PetscFree(share));
