@@ -194,7 +194,17 @@ static void Group(void **state)
   soup_close(&soup);
 }
 
-/* Triangles that are turned, or all of them: the same wall, and a warning. */
+/* Every so many of its triangles face the other way. */
+static void turn_some(Soup *soup, int every)
+{
+  for (int i = 0; i < soup->n; i += every)
+    for (int d = 0; d < 3; ++d) {
+      const double kept = soup->corner[i][1][d];
+      soup->corner[i][1][d] = soup->corner[i][2][d], soup->corner[i][2][d] = kept;
+    }
+}
+
+/* Triangles that are turned, or all of them: the same wall, and a warning where that says something. */
 static void Turned(void **state)
 {
   const double min[3] = {-0.5, -0.5, -0.5}, max[3] = {0.5, 0.5, 0.5};
@@ -202,23 +212,40 @@ static void Turned(void **state)
   OneWall exact, read;
   (void)state;
   wall_open(&exact, &kinematics_3d, (WallSpec){.shape = box});
-  for (int every = 1; every < 4; ++every) {
+  for (int kind = 0; kind < 6; ++kind) {
+    const int gmsh = kind % 2;
     Soup soup;
     soup_open(&soup);
     soup_add_box(&soup, min, max);
-    for (int i = 0; i < soup.n; i += every)
-      for (int d = 0; d < 3; ++d) {
-        const double kept = soup.corner[i][1][d];
-        soup.corner[i][1][d] = soup.corner[i][2][d], soup.corner[i][2][d] = kept;
-      }
-    wall_open(&read, &kinematics_3d, surface_of(write_binary(&soup, "turned.stl")));
+    turn_some(&soup, 1 + kind / 2);
+    wall_open(&read, &kinematics_3d,
+              surface_of(gmsh ? write_msh(&soup, 6, "turned.msh") : write_binary(&soup, "turned.stl")));
     assert_int_equal(diag_errors(read.diag), 0);
-    assert_int_equal(diag_warnings(read.diag), 1);
+    assert_int_equal(diag_warnings(read.diag), !gmsh);
     compare_walls(&read, &exact, 1e-15, 1e-13, 1e-11);
     wall_close(&read);
     soup_close(&soup);
   }
   wall_close(&exact);
+}
+
+/* Of a mesh with two pieces the way they face tells a cavity from a body. */
+static void TurnedCavity(void **state)
+{
+  const double min[3] = {-0.5, -0.5, -0.5}, max[3] = {0.5, 0.5, 0.5}, low[3] = {-0.2, -0.2, -0.2},
+               high[3] = {0.2, 0.2, 0.2};
+  OneWall read;
+  Soup soup;
+  (void)state;
+  soup_open(&soup);
+  soup_add_box(&soup, min, max);
+  soup_add_box(&soup, low, high);
+  turn_some(&soup, 3);
+  wall_open(&read, &kinematics_3d, surface_of(write_msh(&soup, 6, "cavity.msh")));
+  assert_int_equal(diag_errors(read.diag), 0);
+  assert_int_equal(diag_warnings(read.diag), 1);
+  wall_close(&read);
+  soup_close(&soup);
 }
 
 /* A sliver without area on an edge of the box, corners that differ by the last digit of single
@@ -299,9 +326,10 @@ static void Ridge(void **state)
 
 int main(void)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(BoxOfTriangles), cmocka_unit_test(ScaleAndOffset), cmocka_unit_test(Sphere),
-    cmocka_unit_test(Needles),        cmocka_unit_test(OpenTube),       cmocka_unit_test(Group),
-    cmocka_unit_test(Turned),         cmocka_unit_test(Untidy),         cmocka_unit_test(Ridge)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(BoxOfTriangles), cmocka_unit_test(ScaleAndOffset),
+                                     cmocka_unit_test(Sphere),         cmocka_unit_test(Needles),
+                                     cmocka_unit_test(OpenTube),       cmocka_unit_test(Group),
+                                     cmocka_unit_test(Turned),         cmocka_unit_test(TurnedCavity),
+                                     cmocka_unit_test(Untidy),         cmocka_unit_test(Ridge)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

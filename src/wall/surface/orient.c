@@ -88,12 +88,13 @@ static void settle_piece(Triangles *t, const Flood *flood, PetscInt n, PetscBool
   }
 }
 
-PetscErrorCode TrianglesOrient(Triangles *t, PetscBool closed, PetscInt *turned, PetscInt *first, PetscInt *two_faced)
+PetscErrorCode TrianglesOrient(Triangles *t, PetscBool closed, PetscInt *pieces, PetscInt *turned, PetscInt *first,
+                               PetscInt *two_faced)
 {
   Flood flood = {.contradiction = -1};
 
   PetscFunctionBeginUser;
-  *turned = *first = 0;
+  *pieces = *turned = *first = 0;
   PetscCall(PetscCalloc1(t->n, &flood.way));
   PetscCall(PetscMalloc1(t->n, &flood.queue));
   for (PetscInt i = 0; i < t->n; ++i) {
@@ -101,6 +102,7 @@ PetscErrorCode TrianglesOrient(Triangles *t, PetscBool closed, PetscInt *turned,
     const PetscInt n = flood_piece(t, i, &flood);
     if (flood.contradiction >= 0) break;
     settle_piece(t, &flood, n, closed, turned, first);
+    ++*pieces;
   }
   *two_faced = flood.contradiction;
   PetscCall(PetscFree(flood.way));

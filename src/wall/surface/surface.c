@@ -135,18 +135,26 @@ static void check_edges(const Source *s, const Triangles *t)
   diag_hint(s->diag, "close it; or `open: true` makes it a thin wall without an inside");
 }
 
+/* Does it say something which way triangles face? In Gmsh they face as the surfaces of the geometry do, those of an
+ * extruded box this way and that; but a cavity is told from a body by it. */
+static PetscBool facing_counts(const Shape *shape, PetscInt pieces)
+{
+  return (PetscBool)(!ends_with(shape->file, ".msh") || (!shape->open && pieces > 1));
+}
+
 /* Turn what is turned the wrong way; PETSC_FALSE if there is no right one. */
 static PetscErrorCode Orient(const Source *s, Triangles *t)
 {
   const PetscBool closed = !s->shape->open;
-  PetscInt turned, first, two_faced;
+  PetscInt pieces, turned, first, two_faced;
 
   PetscFunctionBeginUser;
-  PetscCall(TrianglesOrient(t, closed, &turned, &first, &two_faced));
+  PetscCall(TrianglesOrient(t, closed, &pieces, &turned, &first, &two_faced));
   if (two_faced >= 0)
     diag_error(s->diag, s->path, "'%s' has one side only (like a Moebius strip), near triangle %" PetscInt_FMT,
                s->shape->file, t->number[two_faced]);
-  if (turned)
+  const PetscBool counts = facing_counts(s->shape, pieces);
+  if (turned && counts)
     diag_warning(s->diag, s->path,
                  "'%s': %" PetscInt_FMT
                  " triangles face the other way than their neighbours, the first is number "
@@ -155,7 +163,8 @@ static PetscErrorCode Orient(const Source *s, Triangles *t)
   if (!closed || two_faced >= 0) PetscFunctionReturn(0);
   const PetscReal volume = triangles_volume(t);
   if (volume < 0) triangles_turn_all(t);
-  if (volume < 0) diag_warning(s->diag, s->path, "'%s' is inside out: all its triangles are turned", s->shape->file);
+  if (volume < 0 && counts)
+    diag_warning(s->diag, s->path, "'%s' is inside out: all its triangles are turned", s->shape->file);
   if (volume == 0) diag_error(s->diag, s->path, "'%s' encloses no volume", s->shape->file);
   PetscFunctionReturn(0);
 }

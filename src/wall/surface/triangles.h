@@ -38,9 +38,10 @@ PetscErrorCode TrianglesJoin(Triangles *t);
 
 /* --- orient.c --- */
 /* Turn triangles so that neighbours agree: those of a piece that contradict most others, or that
- * make its volume negative if it is closed. turned: how many; first: the number of one of them.
- * two_faced: a triangle where that is impossible, or -1. */
-PetscErrorCode TrianglesOrient(Triangles *t, PetscBool closed, PetscInt *turned, PetscInt *first, PetscInt *two_faced);
+ * make its volume negative if it is closed. pieces: of which there are so many; turned: how many
+ * triangles; first: the number of one of them. two_faced: a triangle where that is impossible, or -1. */
+PetscErrorCode TrianglesOrient(Triangles *t, PetscBool closed, PetscInt *pieces, PetscInt *turned, PetscInt *first,
+                               PetscInt *two_faced);
 /* The volume that they enclose, m3, if they are closed. */
 PetscReal triangles_volume(const Triangles *t);
 void triangles_turn_all(Triangles *t);
