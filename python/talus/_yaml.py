@@ -146,6 +146,15 @@ def loads(text):
     return _Block(text).value(0)
 
 
+def key(name):
+    """A key as a text. Readers of YAML 1.1, such as PyYAML, take the key `on` for true, and `off` for false.
+
+    >>> key("grid"), key(True)
+    ('grid', 'on')
+    """
+    return {True: "on", False: "off"}[name] if isinstance(name, bool) else str(name)
+
+
 def plain(value):
     """Numbers and arrays of NumPy, paths and tuples as what JSON knows.
 
@@ -153,7 +162,7 @@ def plain(value):
     {'size': 0.5, 'min': [0.0, 0.0], 'mesh': ['a', 1]}
     """
     if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
+        return {key(name): plain(item) for name, item in value.items()}
     if isinstance(value, (list, tuple)):
         return [plain(item) for item in value]
     if hasattr(value, "tolist"):

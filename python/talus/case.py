@@ -31,6 +31,13 @@ def _walk(document, path, parts):
     return document
 
 
+def _named(document):
+    """The same dict with texts for its keys, which `case["boundary[0].on"]` looks for."""
+    if isinstance(document, dict):
+        return {_yaml.key(name): _named(item) for name, item in document.items()}
+    return [_named(item) for item in document] if isinstance(document, list) else document
+
+
 class Case:
     """A case of a file, of a folder with a `case.yaml`, or of a dict.
 
@@ -55,7 +62,7 @@ class Case:
         self.document = None
         self.changes = {}
         if isinstance(source, dict):
-            self.document = copy.deepcopy(source)
+            self.document = _named(copy.deepcopy(source))
             self.folder = Path(folder or ".")
             self.file = self.folder / "case"
         else:

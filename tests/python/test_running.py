@@ -120,6 +120,16 @@ class Cases(InFolder):
         with self.assertRaisesRegex(ValueError, "cannot hold nan"):
             block(**{"analysis.end": np.nan}).check()
 
+    def test_keys_that_yaml_1_1_takes_for_truth(self):
+        """PyYAML's safe_load has the key True for `on`."""
+        case = block()
+        case["boundary"] = [{True: {"boundary": "bottom"}, "fix": ["x", "y"]}]
+        held = talus.Case(case.document)
+        self.assertEqual(held["boundary[0].on.boundary"], "bottom")
+        for one in (case, held):
+            self.assertEqual(one.resolved()["boundary"][0]["on"], {"boundary": "bottom"})
+        self.assertEqual(talus.run(held, "on").outcome, "done")
+
     def test_yaml_of_flow_collections(self):
         self.assertEqual(_yaml.loads('a: {b: [1, "x, y", {c: -.inf}], "d e": ""}  # end\nf: "a # b"\n'),
                          {"a": {"b": [1, "x, y", {"c": float("-inf")}], "d e": ""}, "f": "a # b"})
