@@ -1,5 +1,6 @@
 #!/bin/sh
-# Meshes that cannot be used: said with the file's name (and its line where that helps), exit code 2, nothing written.
+# Meshes that cannot be used: said with the file's name (and its line where that helps), exit code 2, nothing written. And
+# one in millimetres, that can.
 . "$(dirname "$0")/library.sh"
 
 cat >case.yaml <<'END'
@@ -66,6 +67,19 @@ check() {
 
 plate '' >plate.msh
 expect "good mesh" 0 "$talus" run case.yaml --out good --quiet
+mv plate.msh metres.msh
+plate '/^[1-6] [0-2] [01] 0/s/ \([12]\)/ \1000/g' >plate.msh
+for ranks in 1 2; do
+  expect "a mesh in mm, $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out mm --force --quiet --set grid.scale=0.001
+  cmp -s good/history.csv mm/history.csv || [ $ranks = 2 ] || fail "$name: $(cat mm/history.csv)"
+  tip=$(tail -n 1 good/history.csv | cut -d, -f3)
+  tail -n 1 mm/history.csv | awk -F, -v tip="$tip" '{exit !(($3 - tip) ^ 2 < 1e-20)}' || fail "$name: $(tail -n 1 mm/history.csv) for $tip"
+done
+body='bodies[0]={name: plate, mesh: plate.msh, scale: 0.001, region: soil, points_per_cell: 4, material: rubber}'
+expect "a body's mesh in mm" 0 "$talus" check case.yaml --set method=mpm --set 'grid={box: {min: [0, 0], max: [3, 2]}, size: 0.5}' --set "$body" --set 'boundary[0].on={x: 0}'
+says out.txt "scale: 0.001" "volume 2 m3"
+expect "a scale of no mesh" 2 "$talus" check case.yaml --set 'grid={box: {min: [0, 0], max: [3, 2]}, size: 0.5, scale: 2}'
+says err.txt "key 'scale' of grid means something only beside 'mesh'"
 refused "inverted cell" 's/^3 3 2 2 2 2 3 6 5/3 3 2 2 2 2 6 3 5/' "plate.msh" "cell"
 refused "flat cell" 's/^6 2 1 0/6 1.5 0.5 0/' "plate.msh"
 refused "unknown node" 's/^3 3 2 2 2 2 3 6 5/3 3 2 2 2 2 3 66 5/' "plate.msh" "element 3 names node 66"

@@ -26,8 +26,9 @@ typedef struct {
   char *name, *material;
   PetscBool has_shape;
   Shape shape;
-  char *region; /* a physical group of the grid's mesh, or NULL */
-  char *mesh;   /* a mesh of its own that only seeds points, or NULL */
+  char *region;         /* a physical group of the grid's mesh, or NULL */
+  char *mesh;           /* a mesh of its own that only seeds points, or NULL */
+  PetscReal mesh_scale; /* m for one unit of it; 0 stands for 1 */
   PetscInt points_per_cell;
   PointWeights weights;
   BodyFill fill;                     /* whole cells, or what of them lies in the shape */

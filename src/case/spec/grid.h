@@ -21,6 +21,7 @@ typedef struct {
   PetscInt counts[3];    /* cells along each axis, resolved from `size` or `counts` */
   PetscReal grading[3];  /* size of the last cell over the first along each axis, 1 = uniform */
   char *mesh;            /* .msh or .geo, resolved against the folder of the case */
+  PetscReal mesh_scale;  /* m for one unit of it; 0 stands for 1 */
   PetscInt n_parameters; /* numbers handed to a .geo */
   NamedValue *parameters;
   OutsidePolicy outside;

@@ -56,6 +56,8 @@ PetscErrorCode MshLoad(const GridSpec *spec, PetscInt dim, const char *path, Dia
     if (script) PetscCall(LoadScript(spec, dim, diag, message, msh));
     else PetscCall(MshRead(spec->mesh, spec->mesh, msh, sizeof message, message));
   }
+  if (*msh && spec->mesh_scale > 0)
+    for (PetscInt k = 0; k < 3 * (*msh)->n_nodes; ++k) (*msh)->x[k] *= spec->mesh_scale;
   if (message[0]) diag_error(diag, path, "%s", message);
   PetscFunctionReturn(0);
 }

@@ -130,7 +130,7 @@ static PetscErrorCode TakeContour(const Case *c, PetscInt b, const Grid *grid, C
 }
 
 /* A mesh as it lies there, or without a file the box; without a word if that cannot be made. */
-static PetscErrorCode ReadGrid(const Case *c, char *file, Grid **grid)
+static PetscErrorCode ReadGrid(const Case *c, char *file, PetscReal scale, Grid **grid)
 {
   GridSpec spec = c->grid;
   Diag *diag;
@@ -139,6 +139,7 @@ static PetscErrorCode ReadGrid(const Case *c, char *file, Grid **grid)
   PetscCall(DiagCreate(&diag));
   spec.kind = GRID_MESH;
   spec.mesh = file;
+  spec.mesh_scale = scale;
   if (file) PetscCall(GridCreateMesh(PETSC_COMM_SELF, &spec, 2, "grid.mesh", NULL, NULL, diag, grid));
   else if (c->grid.counts[0] * c->grid.counts[1] <= MOST_CELLS)
     PetscCall(GridCreate(PETSC_COMM_SELF, c, NULL, NULL, diag, grid));
@@ -149,6 +150,7 @@ static PetscErrorCode ReadGrid(const Case *c, char *file, Grid **grid)
 PetscErrorCode PlotContoursCreate(const Case *c, PlotContours **contours)
 {
   const char *read = NULL;
+  PetscReal read_scale = 0;
   Grid *grid = NULL;
 
   PetscFunctionBeginUser;
@@ -160,11 +162,13 @@ PetscErrorCode PlotContoursCreate(const Case *c, PlotContours **contours)
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
     const BodySpec *body = &c->bodies[b];
     char *file = body->mesh ? body->mesh : c->grid.mesh;
+    const PetscReal scale = body->mesh ? body->mesh_scale : c->grid.mesh_scale;
     if (fills_shape(c, body) && !body->mesh && !body->region) continue;
-    if (!read || strcmp(read, file ? file : "") != 0) { /* bodies of one mesh stand side by side */
+    if (!read || strcmp(read, file ? file : "") != 0 ||
+        read_scale != scale) { /* bodies of one mesh stand side by side */
       PetscCall(GridDestroy(&grid));
-      PetscCall(ReadGrid(c, file, &grid));
-      read = file ? file : "";
+      PetscCall(ReadGrid(c, file, scale, &grid));
+      read = file ? file : "", read_scale = scale;
     }
     if (grid) PetscCall(TakeContour(c, b, grid, &(*contours)->body[b]));
   }

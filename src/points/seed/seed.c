@@ -314,6 +314,7 @@ PetscErrorCode BodyMeshCreate(MPI_Comm comm, const Case *c, PetscInt b, Diag *di
   PetscFunctionBeginUser;
   spec.kind = GRID_MESH;
   spec.mesh = c->bodies[b].mesh;
+  spec.mesh_scale = c->bodies[b].mesh_scale;
   seed_path(b, "mesh", sizeof path, path);
   PetscCall(GridCreateMesh(comm, &spec, kinematics_dim(c->kinematics), path, NULL, NULL, diag, own));
   PetscCall(GridCheckAxis(c->kinematics, path, diag, own));

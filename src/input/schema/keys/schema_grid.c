@@ -71,6 +71,8 @@ static const SchemaEntry grid_entries[] = {
   KEY("diagonal", WORD, NULL, "how triangles cut the squares of the box", .words = diagonal_words, .fallback = "right",
       .with = "box", AT(GridSpec, diagonal)),
   KEY("grading", TABLE, NULL, "cell sizes that change through the box", .table = &grading, ALWAYS, .with = "box"),
+  KEY("scale", NUMBER, NULL, "m for one unit of the mesh: 0.001 if that is mm", .fallback = "1", .with = "mesh",
+      ABOVE(0), AT(GridSpec, mesh_scale)),
   KEY("parameters", NUMBERS, NULL, "numbers handed to the .geo file: {name: number}", .with = "mesh",
       AT(GridSpec, parameters), .count = offsetof(GridSpec, n_parameters)),
   KEY("outside", WORD, NULL, "what happens to a material point that leaves the grid", .words = outside_words,
@@ -84,6 +86,7 @@ static PetscBool hide_in_grid(const SchemaEntry *e, const void *source)
   const GridSpec *g = source;
   if (!strcmp(e->key, "diagonal") && g->cell != CELL_TRIANGLE) return PETSC_TRUE;
   if (e->with && !strcmp(e->with, "box")) return g->kind != GRID_BOX;
+  if (!strcmp(e->key, "scale")) return g->kind == GRID_BOX;
   return g->n_parameters == 0 && e->type == TYPE_NUMBERS;
 }
 const SchemaTable schema_grid = {.name = "grid",
@@ -118,6 +121,8 @@ static const SchemaEntry body_entries[] = {
       GIVEN(BodySpec, has_shape)),
   KEY("region", TEXT, NULL, "a physical group of the grid's mesh", AT(BodySpec, region)),
   KEY("mesh", FILE, NULL, "a Gmsh file of its own that only places the points", AT(BodySpec, mesh)),
+  KEY("scale", NUMBER, NULL, "m for one unit of `mesh`: 0.001 if that is mm", .fallback = "1", .with = "mesh", ABOVE(0),
+      AT(BodySpec, mesh_scale)),
   KEY("material", REFERENCE, NULL, "a name from `materials`", .target = "materials", REQUIRED, AT(BodySpec, material)),
   KEY("points_per_cell", INTEGER, NULL, "material points in each cell, at its Gauss points",
       .note = "on a box: triangle 3, quadrilateral 4, tetrahedron 4, hexahedron 8; on a mesh it must be given",
@@ -151,7 +156,9 @@ static const SchemaGroup body_groups[] = {{GROUP_AT_LEAST_ONE, {"shape", "region
                                           {GROUP_NONE, {NULL}}};
 static PetscBool hide_in_body(const SchemaEntry *e, const void *source)
 {
-  return e->with && !((const BodySpec *)source)->has_surface;
+  const BodySpec *b = source;
+  if (!strcmp(e->key, "scale")) return !b->mesh;
+  return e->with && !b->has_surface;
 }
 const SchemaTable schema_body = {.name = "body",
                                  .help = "A piece of material.",
