@@ -34,7 +34,7 @@ PetscErrorCode GridCheckBoundary(const Grid *grid, const char *name, const char 
   *good = PETSC_FALSE;
   PetscCall(BoundaryNames(grid, &names));
   for (PetscInt k = 0; names[k]; ++k) *good |= !strcmp(names[k], name);
-  if (!*good && !grid_find_set(grid, name)) diag_error(diag, path, "the grid has no boundary named '%s'", name);
+  if (!*good && !grid_find_set(grid, name)) diag_error(diag, path, "no boundary is named '%s'", name);
   else if (!*good) diag_error(diag, path, "'%s' is a region of cells, not a boundary", name);
   if (!*good) diag_hint_names(diag, name, names);
   PetscCall(PetscFree(names));

@@ -29,7 +29,7 @@ for method in fem mpm gmm; do
 done
 for method in fem mpm; do
   expect "no such side, $method" 2 "$talus" check side.yaml --set method=$method --set 'loads.tractions[0].on.boundary=tpo'
-  says err.txt "the grid has no boundary or region named 'tpo'" "did you mean 'top'"
+  says err.txt "no boundary is named 'tpo'" "did you mean 'top'"
 done
 
 # --- whole cells in the place of a disk: their steps are longer than its circle ---
@@ -68,7 +68,7 @@ near base 3 785.398 0.2 # p pi R^2
 expect "by a place" 0 "$talus" run disk.yaml --out run --force --set 'loads.tractions[0].on={body: d, boundary: left}'
 near base 3 500 1e-3
 expect "no such group" 2 "$talus" check disk.yaml --set 'loads.tractions[0].on.boundary=ark'
-says err.txt "the body's mesh has no boundary or region named 'ark'" "did you mean 'arc'"
+says err.txt "no boundary is named 'ark'" "did you mean 'arc'"
 
 # --- a surface between two bodies: whichever of both the mesh has first, a pressure pushes the one that is named ---
 cat >two.geo <<'END'

@@ -200,8 +200,8 @@ expect "a list" 2 "$talus" list lawss
 says err.txt "did you mean 'laws'?"
 plate 1
 for wrong in "grid.parameters.hh=0.1 grid.parameters.hh=0.1: error: the .geo of the case has no use for a number 'hh'|did you mean 'h'? There are: h" \
-  "boundary[0].on.boundary=wal the grid has no boundary named 'wal'|did you mean 'wall'? There are: wall, edge" \
-  "loads.tractions[0].on.boundary=sky the grid has no boundary named 'sky'|there are: wall, edge" \
+  "boundary[0].on.boundary=wal no boundary is named 'wal'|did you mean 'wall'? There are: wall, edge" \
+  "loads.tractions[0].on.boundary=sky no boundary is named 'sky'|there are: wall, edge" \
   "loads.tractions[0].on.boundary=plate 'plate' is a region of cells, not a boundary|there are: wall, edge" \
   "boundary[0].on.boundary=plate 'plate' is a region of cells, not a boundary|there are: wall, edge" \
   "bodies[0].region=plat the mesh has no region 'plat'|did you mean 'plate'? There are: "; do
