@@ -168,6 +168,29 @@ static PetscErrorCode StagesClear(Case *c)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode CaseAddFile(Case *c, const char *key, const char *path)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < c->n_files; ++k)
+    if (!strcmp(c->files[k].path, path)) PetscFunctionReturn(0);
+  PetscCall(PetscRealloc((size_t)(c->n_files + 1) * sizeof(CaseFile), &c->files));
+  CaseFile *file = &c->files[c->n_files++];
+  PetscCall(PetscStrallocpy(key, &file->key));
+  PetscCall(PetscStrallocpy(path, &file->path));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode FilesClear(Case *c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < c->n_files; ++k) {
+    PetscCall(PetscFree(c->files[k].key));
+    PetscCall(PetscFree(c->files[k].path));
+  }
+  PetscCall(PetscFree(c->files));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CaseDestroy(Case **c)
 {
   PetscFunctionBeginUser;
@@ -194,6 +217,7 @@ PetscErrorCode CaseDestroy(Case **c)
   PetscCall(MeasuresClear(*c));
   PetscCall(StringsClear((*c)->output.n_fields, &(*c)->output.fields));
   PetscCall(StringsClear((*c)->n_petsc, &(*c)->petsc));
+  PetscCall(FilesClear(*c));
   PetscCall(PetscFree(*c));
   PetscFunctionReturn(0);
 }

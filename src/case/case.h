@@ -17,6 +17,12 @@
 #include "case/spec/output.h"
 #include "case/spec/shape.h"
 
+/* A file that a case reads besides itself. */
+typedef struct {
+  char *key;  /* where the case names it: grid.mesh */
+  char *path; /* absolute */
+} CaseFile;
+
 typedef struct Case {
   char *file;   /* as the user named it */
   char *folder; /* where it stands, "." at least: relative names start here */
@@ -53,6 +59,8 @@ typedef struct Case {
   ParallelSpec parallel;
   PetscInt n_petsc; /* options of the petsc: block, in order: "-name value" */
   char **petsc;
+  PetscInt n_files; /* each once; of a case with stages those that its stages name are with these */
+  CaseFile *files;
   StrengthSpec strength;
   PetscInt n_stages; /* 0: the case is what is run */
   StageSpec *stages;
@@ -136,6 +144,8 @@ PetscInt case_body(const Case *c, const char *name); /* its index; the name is o
 PetscInt case_field(const Case *c, PetscInt body);
 PetscInt case_fields(const Case *c);
 
+/* It reads this file, too; one that is known stays as it is. */
+PetscErrorCode CaseAddFile(Case *c, const char *key, const char *path);
 PetscErrorCode CaseDestroy(Case **c);
 
 /* Value at time t of what is applied: without an amplitude it grows with pseudo-time in statics and

@@ -339,6 +339,15 @@ static void check_windows(const Case *whole, PetscInt k, Diag *diag)
   diag_of_stage(diag, -1, NULL);
 }
 
+/* What a stage reads, the run reads. */
+static PetscErrorCode TakeFiles(const Case *stage, Case *whole)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < stage->n_files; ++k)
+    PetscCall(CaseAddFile(whole, stage->files[k].key, stage->files[k].path));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag *diag, Case *whole)
 {
   YamlNode *root = document->root;
@@ -355,6 +364,7 @@ static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag 
     diag_of_stage(diag, k, whole->stages[k].name);
     PetscCall(ReadDocument(file, document, diag, whole, k, &whole->stage_case[k]));
     if (diag_errors(diag) > before) break;
+    PetscCall(TakeFiles(whole->stage_case[k], whole));
     tell_ages(document->root, whole->stage_case[k]);
     check_gone(whole->stage_case[k], diag);
     check_beyond(k ? whole->stage_case[k - 1] : NULL, whole->stage_case[k], diag);

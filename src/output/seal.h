@@ -10,6 +10,8 @@ typedef struct {
 
 /* Of one process; returns 0 or an errno. */
 int file_seal(const char *path, FileSeal *seal);
+/* The same with the CRC-32 of all of the file, however long it is: of one that somebody may edit. */
+int file_seal_whole(const char *path, FileSeal *seal);
 /* Empty if the file is there and has the seal, else what is wrong with it. A seal that is not known
  * fits any file. */
 void file_check_seal(const char *path, const FileSeal *seal, char reason[128]);

@@ -2,9 +2,11 @@
 #include <string.h>
 #include "input/case_file.h"
 #include "output/directory/run_dir_files.h"
+#include "output/inputs.h"
 #include "output/vtk/vtk.h"
 #include "run/run_private.h"
 #include "run/stages/initial.h"
+#include "run/report/found.h"
 #include "run/report/summary.h"
 #include "run/watch/events.h"
 
@@ -50,6 +52,7 @@ PetscErrorCode RunOpen(Run *r, const RunOptions *options, Diag *diag)
   PetscCall(RunDirCreate(r->comm, options->out, options->force, options->quiet, options->log, diag, &r->dir));
   if (!r->dir) PetscFunctionReturn(0);
   PetscCall(FunctionsWrite(r, options)); /* before the case, without which nobody resumes the run */
+  if (!r->failed) PetscCall(RunWritten(r, InputsWrite(r->comm, r->dir, r->whole)));
   if (!r->failed) PetscCall(WriteCase(r));
   if (!r->failed) PetscCall(OpenHistory(r, NULL));
   if (r->failed) PetscFunctionReturn(0);
@@ -151,6 +154,20 @@ static PetscErrorCode StartAgain(Run *r, const RunOptions *options, const Extens
   PetscFunctionReturn(0);
 }
 
+/* What the run has read must be what it was; the run that it started from has given its state. */
+static PetscErrorCode CheckInputs(const Run *r, Diag *diag, PetscBool *same)
+{
+  char changed[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBeginUser;
+  PetscCall(FoundChanged(r->comm, run_dir_path(r->dir), PETSC_FALSE, changed));
+  if (!changed[0]) PetscFunctionReturn(0);
+  *same = PETSC_FALSE;
+  diag_error(diag, NULL, "'%s' has changed since the run in '%s' read it", changed, run_dir_path(r->dir));
+  diag_hint(diag, "a new run reads it as it is: talus run %s/case.yaml --out ANOTHER", run_dir_path(r->dir));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBool *complete)
 {
   PetscMPIInt size;
@@ -162,6 +179,7 @@ PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBoo
   PetscCall(RunDirOpen(r->comm, options->out, options->quiet, options->log, diag, &r->dir));
   if (!r->dir) PetscFunctionReturn(0);
   PetscCall(FunctionsCheck(r, options, diag, &same));
+  PetscCall(CheckInputs(r, diag, &same));
   PetscCall(ExtensionBegin(r, &extension));
   /* node positions at the start */
   if (r->output) output_set_folder(r->output, run_dir_path(r->dir));

@@ -12,12 +12,14 @@
 /* The case of the run. NULL and a message if there is none. */
 static PetscErrorCode ReadRunCase(const Verification *v, Diag *diag, char **text)
 {
-  char reason[256];
+  char reason[256], changed[PETSC_MAX_PATH_LEN] = "";
 
   PetscFunctionBeginUser;
   PetscCall(FoundCase(v->comm, v->options->run, text, reason));
   if (!*text)
     diag_error(diag, NULL, "'%s' is no run directory: %s/case.yaml: %s", v->options->run, v->options->run, reason);
+  else PetscCall(FoundChanged(v->comm, v->options->run, PETSC_TRUE, changed));
+  if (changed[0]) diag_error(diag, NULL, "'%s' has changed since the run in '%s' read it", changed, v->options->run);
   PetscFunctionReturn(0);
 }
 

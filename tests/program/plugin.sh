@@ -187,4 +187,14 @@ for ranks in 1 2 3; do
   awk -F, 'END {f = $NF / (1.25 * 2 / sqrt(3) * 2e8 * exp(-0.02)); exit !(f > 0.998 && f < 1.002)}' sdvini$ranks/history.csv || fail "$name: other strength"
   awk -f "$compare" sdvini1/history.csv sdvini$ranks/history.csv >out.txt || fail "$name: another history"
 done
+
+# A library that was compiled anew is another law
+overs() { "$talus" sweep bar.yaml --law voce=voce.so --over analysis.steps=2 --out overs --jobs 1; }
+expect "a sweep with a law" 0 overs
+says overs/steps=2/files.txt "law.voce = " "/voce.so"
+expect "a sweep with the same law" 0 overs
+says out.txt "1 done before"
+printf x >>voce.so
+expect "a sweep with another law" 2 overs
+says err.txt "/voce.so' has changed since the run in 'overs/steps=2' read it"
 finish

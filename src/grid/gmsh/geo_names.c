@@ -15,6 +15,8 @@ typedef struct {
   PetscBool found, lost; /* lost: a file gives it another value, whatever it was given */
   PetscInt n;            /* names that the files let others choose */
   char names[MAX_NAMES][64];
+  GeoFile *each; /* told of every file that is there; NULL: names are looked for */
+  void *context;
 } Search;
 
 static PetscBool is_name(int c) { return isalnum(c) || c == '_'; }
@@ -104,13 +106,13 @@ static char *read_text(const char *file)
 
 static void look_into(Search *s, const char *file, int depth);
 
-/* Every `Include "other.geo"`, beside the file that says so. */
-static void look_into_included(Search *s, const char *file, const char *text, int depth)
+/* Every `Include "other.geo"` (word: Include), beside the file that says so. */
+static void look_into_included(Search *s, const char *file, const char *text, const char *word, int depth)
 {
   const char *slash = strrchr(file, '/');
-  for (const char *p = strstr(text, "Include"); p; p = strstr(p + 1, "Include")) {
+  for (const char *p = strstr(text, word); p; p = strstr(p + 1, word)) {
     char other[PETSC_MAX_PATH_LEN];
-    const char *name = p + strlen("Include"), *end;
+    const char *name = p + strlen(word), *end;
     name += strspn(name, " \t");
     if (*name != '"' || !(end = strchr(name + 1, '"'))) continue;
     snprintf(other, sizeof other, "%.*s%.*s", name[1] == '/' || !slash ? 0 : (int)(slash - file) + 1, file,
@@ -123,9 +125,11 @@ static void look_into(Search *s, const char *file, int depth)
 {
   char *text = depth < MAX_DEPTH ? read_text(file) : NULL;
   if (!text) return;
-  look_into_included(s, file, text, depth);
+  if (s->each) s->each(s->context, file);
+  look_into_included(s, file, text, "Include", depth);
+  if (s->each) look_into_included(s, file, text, "Merge", depth);
   blank_comments(text);
-  look_at_words(s, text);
+  if (!s->each) look_at_words(s, text);
   free(text);
 }
 
@@ -172,4 +176,10 @@ PetscErrorCode GeoCheckParameters(MPI_Comm comm, const Case *c, Diag *diag)
   }
   PetscCall(PetscFree(s));
   PetscFunctionReturn(0);
+}
+
+void geo_files(const char *file, GeoFile *each, void *context)
+{
+  Search s = {.each = each, .context = context};
+  if (is_geo(file)) look_into(&s, file, 0);
 }

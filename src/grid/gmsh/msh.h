@@ -44,3 +44,6 @@ PetscErrorCode GeoRun(const char *path, PetscInt dim, PetscInt n_parameters, con
 PetscErrorCode MshLoad(const GridSpec *spec, PetscInt dim, const char *path, Diag *diag, MshFile **msh);
 /* Collective. An error for each of the grid's parameters that no .geo of the case mentions. */
 PetscErrorCode GeoCheckParameters(MPI_Comm comm, const Case *c, Diag *diag);
+/* Not collective. Told of a .geo, of what it includes and merges, and of what these do; of no other file. */
+typedef void GeoFile(void *context, const char *file);
+void geo_files(const char *file, GeoFile *each, void *context);

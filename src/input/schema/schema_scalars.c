@@ -257,7 +257,7 @@ PetscErrorCode SchemaReadValues(SchemaReader *r, const SchemaEntry *e, const Yam
 PetscErrorCode SchemaReadFile(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
   const char *folder = r->c->folder;
-  char here[PETSC_MAX_PATH_LEN], path[3 * PETSC_MAX_PATH_LEN];
+  char here[PETSC_MAX_PATH_LEN], path[3 * PETSC_MAX_PATH_LEN], key[512];
 
   PetscFunctionBeginUser;
   if (node->kind != YAML_SCALAR || yaml_is_null(node)) {
@@ -270,6 +270,7 @@ PetscErrorCode SchemaReadFile(SchemaReader *r, const SchemaEntry *e, const YamlN
   else if (!strcmp(folder, ".")) snprintf(path, sizeof(path), "%s/%s", here, node->text);
   else snprintf(path, sizeof(path), "%s/%s/%s", here, folder, node->text);
   PetscCall(Store(path, e, target));
+  PetscCall(CaseAddFile(r->c, yaml_path(node, key, sizeof key), path));
   PetscFunctionReturn(0);
 }
 

@@ -4,6 +4,7 @@
  *   case.yaml     the resolved case (every key with its value)      history.csv   measures
  *   events.csv    what measures that count events noted of them
  *   factor.csv    factors that were tried, of a factor of safety
+ *   files.txt     the files that the case reads, and what they were (output/inputs.h)
  *   functions.txt for what functions of the caller act, if any do
  *   log.txt       what the run said                                 timings.txt   where the time
  *   went version.txt   talus, PETSc, MPI, compiler, number of ranks      pictures/     of talus

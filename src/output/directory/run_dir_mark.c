@@ -23,8 +23,9 @@ static const char unfinished[] = "*" FILE_UNFINISHED;
 #define TABLES "history.csv", "events.csv", "factor.csv", "limit.csv", "stages.csv"
 #define CHECKPOINTS "checkpoint_[0-9]*.h5", "stage_[0-9]*.h5", "checkpoint_[0-9]*.h5.damaged"
 /* What a run leaves behind, and what `--force` removes. */
-static const char *const run_files[] = {"case.yaml", "functions.txt", "log.txt",   "version.txt", "timings.txt",
-                                        TABLES,      STATE_FILES,     CHECKPOINTS, unfinished,    NULL};
+static const char *const run_files[] = {"case.yaml",   "files.txt", "functions.txt", "log.txt",   "version.txt",
+                                        "timings.txt", TABLES,      STATE_FILES,     CHECKPOINTS, unfinished,
+                                        NULL};
 static const char *const state_files[] = {STATE_FILES, NULL};
 static const char *const picture_files[] = {
   "state_*.png", "history_*.png", "profile_*.png", "profile_*.csv", "factor.png", unfinished, NULL};

@@ -8,6 +8,7 @@
 #include <string.h>
 #include "input/case_file.h"
 #include "output/directory/run_dir_files.h"
+#include "output/inputs.h"
 
 /* Top-level keys on which no result depends, but for round-off. */
 static PetscBool is_idle(const char *line)
@@ -67,6 +68,23 @@ PetscErrorCode FoundIsCase(const Case *c, const char *text, PetscBool *is)
   drop_idle(own);
   *is = !strcmp(own, text);
   PetscCall(PetscFree(own));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FoundChanged(MPI_Comm comm, const char *folder, PetscBool runs, char file[PETSC_MAX_PATH_LEN])
+{
+  Inputs inputs = {0};
+  PetscMPIInt rank;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  file[0] = '\0';
+  if (!rank) PetscCall(InputsRead(folder, &inputs));
+  for (PetscInt k = 0; k < inputs.n && !file[0]; ++k)
+    if ((runs || !input_is_run(&inputs.input[k])) && input_changed(&inputs.input[k]))
+      PetscCall(PetscStrncpy(file, inputs.input[k].path, PETSC_MAX_PATH_LEN));
+  PetscCall(InputsClear(&inputs));
+  PetscCallMPI(MPI_Bcast(file, PETSC_MAX_PATH_LEN, MPI_CHAR, 0, comm));
   PetscFunctionReturn(0);
 }
 

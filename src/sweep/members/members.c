@@ -60,19 +60,22 @@ static PetscBool has_checkpoint(const char *folder)
 /* What is there already? */
 static PetscErrorCode LookForRun(const Members *members, Member *m, const Case *c, Diag *diag)
 {
-  char *text, reason[256], outcome[64];
+  char *text, reason[256], outcome[64], changed[PETSC_MAX_PATH_LEN] = "";
   PetscBool same = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(FoundCase(PETSC_COMM_SELF, m->folder, &text, reason));
   if (text) PetscCall(FoundIsCase(c, text, &same));
+  if (same) PetscCall(FoundChanged(PETSC_COMM_SELF, m->folder, PETSC_TRUE, changed));
+  if (changed[0]) same = PETSC_FALSE;
   m->replace = members->force || (file_exists(m->folder, "case.yaml") && (!text || same));
   if (same && !members->force) {
     found_word(m->folder, "timings.txt", "outcome", outcome);
     m->kept = !strcmp(outcome, "done");
     m->resume = !m->kept && has_checkpoint(m->folder);
   } else if (text && !members->force) {
-    diag_error(diag, NULL, "'%s' holds a run of another case: something has changed since then", m->folder);
+    if (changed[0]) diag_error(diag, NULL, "'%s' has changed since the run in '%s' read it", changed, m->folder);
+    else diag_error(diag, NULL, "'%s' holds a run of another case: something has changed since then", m->folder);
     diag_hint(diag, "--force runs all members again, --out DIR leaves these alone");
   }
   PetscCall(PetscFree(text));

@@ -38,13 +38,15 @@ static PetscErrorCode ReadFinished(const Verification *v, const char *folder, Ve
 /* From one folder; read by rank 0 for all. */
 static PetscErrorCode TakeFrom(const Verification *v, const char *folder, VerifyRow *r, const Case *c, PetscBool *found)
 {
-  char *text, reason[256];
+  char *text, reason[256], changed[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
   *found = PETSC_FALSE;
   PetscCall(FoundCase(v->comm, folder, &text, reason));
   if (text) PetscCall(FoundIsCase(c, text, found));
   PetscCall(PetscFree(text));
+  if (*found) PetscCall(FoundChanged(v->comm, folder, PETSC_TRUE, changed));
+  if (*found && changed[0]) *found = PETSC_FALSE;
   if (*found && v->rank == 0) PetscCall(ReadFinished(v, folder, r, c, found));
   PetscCallMPI(MPI_Bcast(found, 1, MPIU_BOOL, 0, v->comm));
   PetscFunctionReturn(0);
