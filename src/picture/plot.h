@@ -13,7 +13,7 @@ extern const char *const plot_formats[], *const plot_films[], *const plot_legend
 typedef struct {
   const char *run;                  /* the run directory */
   const char *field;                /* NULL: displacement, or the first that there is */
-  const char *component;            /* NULL: magnitude of a vector, mises of a tensor */
+  const char *component;            /* NULL: magnitude of a vector, mises of a stress, deviatoric of a strain */
   PetscInt n_times;                 /* the states nearest to these; 0: the last one */
   PetscReal times[PLOT_MAX_STATES]; /* s */
   /* so many of all states instead, from the first to the last; no picture where there are less

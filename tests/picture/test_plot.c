@@ -189,6 +189,9 @@ static void test_scalars(void **state)
   assert_true(plot_scalar_choose("velocity", 3, "y", diag, &scalar) && plot_scalar_value(&scalar, 3, vector) == 3);
   assert_true(plot_scalar_choose("velocity", 3, "2", diag, &scalar) && plot_scalar_value(&scalar, 3, vector) == 6);
   assert_true(plot_scalar_choose("mass", 1, NULL, diag, &scalar) && plot_scalar_value(&scalar, 1, vector) == 2);
+  assert_true(plot_scalar_choose("strain", 6, NULL, diag, &scalar)); /* 2/3 e:e = 2/3 (4 + 1 + 1 + 8) */
+  assert_string_equal(scalar.name, "deviatoric");
+  assert_true(fabs(plot_scalar_value(&scalar, 6, stress) - sqrt(2. / 3 * 14)) < 1e-14);
   assert_int_equal(diag_errors(diag), 0);
   assert_false(plot_scalar_choose("velocity", 3, "mises", diag, &scalar));
   assert_false(plot_scalar_choose("velocity", 3, "3", diag, &scalar));

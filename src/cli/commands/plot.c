@@ -10,7 +10,7 @@
 static const CliOption options_known[] = {
   {"field", "FIELD", "the field that gives the colours (default: displacement)"},
   {"component", "COMPONENT",
-   "x y z, xx yy zz xy yz zx, magnitude, mises, mean (default: magnitude, mises of a tensor)"},
+   "x y z, xx yy zz xy yz zx, magnitude, mean, mises (default of stresses), deviatoric (default of strains)"},
   {"time", "T[,T...]",
    "the states nearest to these times in seconds, or 'all'; several stand side by side (default: the last, and six on "
    "the way to it)"},

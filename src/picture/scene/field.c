@@ -21,10 +21,14 @@ static void set(PlotScalar *scalar, PlotReduction reduction, PetscInt component,
   snprintf(scalar->name, sizeof scalar->name, "%s", name);
 }
 
-static PetscBool reduce(PetscInt components, const char *word, PlotScalar *scalar)
+/* What invariant of its deviator a tensor is shown by: of stresses and strains by that which belongs to their work. */
+static const char *invariant_of(const char *field) { return strcmp(field, "strain") ? "mises" : "deviatoric"; }
+
+static PetscBool reduce(const char *field, PetscInt components, const char *word, PlotScalar *scalar)
 {
+  const PetscBool invariant = (PetscBool)(components == 6 && !strcmp(word, invariant_of(field)));
   if (!strcmp(word, "magnitude") && components > 1) set(scalar, PLOT_MAGNITUDE, 0, word);
-  else if (!strcmp(word, "mises") && components == 6) set(scalar, PLOT_MISES, 0, word);
+  else if (invariant) set(scalar, word[0] == 'm' ? PLOT_MISES : PLOT_DEVIATORIC, 0, word);
   else if (!strcmp(word, "mean") && components == 6) set(scalar, PLOT_MEAN, 0, word);
   else return PETSC_FALSE;
   return PETSC_TRUE;
@@ -35,8 +39,8 @@ PetscBool plot_scalar_choose(const char *field, PetscInt components, const char 
   const char *const *names = names_of(components);
   char *end, list[128] = "", *next = list;
   if (!word && components == 1) return set(scalar, PLOT_COMPONENT, 0, ""), PETSC_TRUE;
-  if (!word) word = components == 6 ? "mises" : "magnitude";
-  if (reduce(components, word, scalar)) return PETSC_TRUE;
+  if (!word) word = components == 6 ? invariant_of(field) : "magnitude";
+  if (reduce(field, components, word, scalar)) return PETSC_TRUE;
   for (PetscInt i = 0; i < components && names[i]; ++i)
     if (!strcmp(word, names[i])) return set(scalar, PLOT_COMPONENT, i, word), PETSC_TRUE;
   const long number = strtol(word, &end, 10);
@@ -45,7 +49,8 @@ PetscBool plot_scalar_choose(const char *field, PetscInt components, const char 
   diag_error(diag, NULL, "the field '%s' has no component '%s'", field, word);
   for (PetscInt i = 0; i < components && names[i]; ++i) next += snprintf(next, 8, "%s, ", names[i]);
   if (components == 1) diag_hint(diag, "it is a single number");
-  else diag_hint(diag, "it has %smagnitude%s", list, components == 6 ? ", mises, mean" : "");
+  else if (components == 6) diag_hint(diag, "it has %smagnitude, %s, mean", list, invariant_of(field));
+  else diag_hint(diag, "it has %smagnitude", list);
   return PETSC_FALSE;
 }
 
@@ -68,6 +73,7 @@ PetscReal plot_scalar_value(const PlotScalar *scalar, PetscInt components, const
   switch (scalar->reduction) {
   case PLOT_MAGNITUDE: return field_magnitude(components, values);
   case PLOT_MISES: return field_mises(values);
+  case PLOT_DEVIATORIC: return 2. / 3 * field_mises(values);
   case PLOT_MEAN: return (values[0] + values[1] + values[2]) / 3;
   default: return values[scalar->component];
   }

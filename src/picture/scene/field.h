@@ -3,7 +3,7 @@
 #include <petscsys.h>
 #include "base/diag/diag.h"
 
-typedef enum { PLOT_COMPONENT, PLOT_MAGNITUDE, PLOT_MISES, PLOT_MEAN } PlotReduction;
+typedef enum { PLOT_COMPONENT, PLOT_MAGNITUDE, PLOT_MISES, PLOT_DEVIATORIC, PLOT_MEAN } PlotReduction;
 
 typedef struct {
   PlotReduction reduction;
@@ -12,6 +12,6 @@ typedef struct {
 } PlotScalar;
 
 /* Understand the name of a component (NULL: what suits the field): x y z, xx yy zz xy yz zx, a
- * number, magnitude, mises, mean. */
+ * number, magnitude, mean, and mises (sqrt(3/2 s:s)) of a stress, deviatoric (sqrt(2/3 e:e)) of a strain. */
 PetscBool plot_scalar_choose(const char *field, PetscInt components, const char *word, Diag *diag, PlotScalar *scalar);
 PetscReal plot_scalar_value(const PlotScalar *scalar, PetscInt components, const PetscReal *values);

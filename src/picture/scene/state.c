@@ -163,8 +163,7 @@ static PetscErrorCode AddGrid(PlotScene *scene, PlotFrame *frame, const char *ru
 static void name_subject(PlotSubject *s, PetscBool smooth)
 {
   const PlotScalar *scalar = &s->scalar;
-  if (scalar->reduction == PLOT_MISES || scalar->reduction == PLOT_MEAN)
-    snprintf(s->words, sizeof s->words, "%s %s", scalar->name, s->field.name);
+  if (scalar->reduction >= PLOT_MISES) snprintf(s->words, sizeof s->words, "%s %s", scalar->name, s->field.name);
   else snprintf(s->words, sizeof s->words, "%s%s%s", s->field.name, scalar->name[0] ? " " : "", scalar->name);
   for (char *c = s->words; *c; ++c)
     if (*c == '_') *c = ' ';
