@@ -5,17 +5,40 @@
 /* of the weight: what increments too small to count may leave */
 #define ROUND_OFF 1e-6
 
+/* of the weight: no stress at all lacks 1 */
+#define MORE_THAN_NONE 1.05
+
+/* Where most of a body was to begin with a stress that it cannot bear, something else was meant. */
 static PetscErrorCode TellStress(const Model *m, RunDir *dir)
 {
+  const PetscReal beyond = m->initial.beyond;
   PetscInt points;
 
   PetscFunctionBeginUser;
   PetscCall(ModelCountPoints(m, &points));
-  if (m->initial.beyond > 0)
-    PetscCall(RunDirLog(dir, "initial stress = beyond the strength at %d of %d points, and brought back to it there%s",
-                        (int)m->initial.beyond, (int)points,
-                        m->c->analysis.type == ANALYSIS_FACTOR ? " once it yields" : ""));
+  if (beyond > 0)
+    PetscCall(RunDirLog(dir, "%s beyond the strength at %d of %d points, and brought back to it there%s",
+                        beyond > points / 2. ? "warning = the initial stress is" : "initial stress =", (int)beyond,
+                        (int)points, m->c->analysis.type == ANALYSIS_FACTOR ? " once it yields" : ""));
   else PetscCall(RunDirLog(dir, "initial stress = within the strength everywhere"));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool gives_stress(const Case *c)
+{
+  for (PetscInt b = 0; b < c->n_bodies; ++b)
+    for (int k = 0; k < 6; ++k)
+      if (c->bodies[b].stress[k]) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+static PetscErrorCode TellLack(const Run *r, PetscReal lacked)
+{
+  PetscFunctionBeginUser;
+  if (lacked <= MORE_THAN_NONE || !case_has_stress(r->c)) PetscFunctionReturn(0);
+  PetscCall(RunDirLog(
+    r->dir, "warning = the initial stress leaves %.3g of the weight out of balance, more than no stress would%s",
+    (double)lacked, gives_stress(r->c) ? ": compression is negative" : ""));
   PetscFunctionReturn(0);
 }
 
@@ -35,6 +58,7 @@ PetscErrorCode RunEquilibrate(Run *r)
                         "initial equilibrium = lacked %.3g of the weight, left %.2g; moved %.3g m at most; parts = %d "
                         "iterations = %d",
                         (double)s->lacked, (double)s->left, (double)s->moved, (int)s->parts, (int)s->iterations));
+    PetscCall(TellLack(r, s->lacked));
     if (s->left > ROUND_OFF)
       PetscCall(
         RunDirLog(r->dir, "warning = points that move still bring %.2g of the weight out of balance", (double)s->left));
@@ -44,6 +68,7 @@ PetscErrorCode RunEquilibrate(Run *r)
            "there is no equilibrium to begin with: %.3g of the weight was out of balance, %.3g still is (%s)",
            (double)s->lacked, (double)s->left,
            report.outcome == STEP_TOO_SMALL ? report.newton.reason : "points left the grid");
+  PetscCall(TellLack(r, s->lacked));
   PetscCall(RunDirLog(r->dir, "gave up = %s", text));
   run_stop(r, text);
   PetscFunctionReturn(0);

@@ -65,4 +65,28 @@ for basis in cell gimp bspline; do
       --set "walls[0].shape.half-space.point=[0, 0.15$hundredths]" --set "walls[1].shape.half-space.point=[0, 0.84$((10 - hundredths))]"
   done
 done
+# A stress of the wrong sign lacks more than none at all, and what most of a body cannot bear is no line among others.
+cat >ground.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [2, 6]}, size: 1}
+bodies: [{name: soil, shape: {box: {min: [0, 0], max: [2, 5]}}, points_per_cell: 4, material: clay}]
+materials: {clay: {law: mohr-coulomb, density: 1800, young: 20e6, poisson: 0.3, friction_angle: 20, cohesion: 10e3}}
+boundary: [{on: {boundary: bottom}, fix: [x, y]}, {on: {boundary: left}, fix: [x]}, {on: {boundary: right}, fix: [x]}]
+loads: {gravity: [0, -9.81]}
+output: {fields: [stress], every: end}
+END
+for ranks in 1 2 3; do
+  expect "tension from compression, $ranks ranks" 0 on_ranks $ranks "$talus" run ground.yaml --out ground$ranks --set 'bodies[0].stress={yy: "17658*(5-y)", xx: "8829*(5-y)", zz: "8829*(5-y)"}'
+  says out.txt "warning = the initial stress leaves " "of the weight out of balance, more than no stress would: compression is negative" "warning = the initial stress is beyond the strength at "
+done
+expect "compression" 0 "$talus" run ground.yaml --out ground --set 'bodies[0].stress={yy: "-17658*(5-y)", xx: "-8829*(5-y)", zz: "-8829*(5-y)"}'
+says out.txt "initial stress = within the strength everywhere"
+lacks out.txt "warning"
+expect "k0 beyond the strength" 0 "$talus" run ground.yaml --out ground --force --set bodies[0].k0=0.1
+says out.txt "warning = the initial stress is beyond the strength at "
+lacks out.txt "more than no stress would"
+expect "no stress, gravity at once" 0 "$talus" run ground.yaml --out ground --force --set initial.equilibrium=direct
+lacks out.txt "more than no stress would"
 finish

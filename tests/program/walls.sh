@@ -305,6 +305,9 @@ expect "no wall there" 0 "$talus" check units.yaml --set 'walls[0].shape.half-sp
 says err.txt "'grains' fills the grid to its edge towards -x"
 expect "radians" 0 "$talus" check units.yaml --set materials.grains.friction_angle=0.5236 --set materials.grains.dilatancy_angle=0
 says err.txt "an angle of friction of 0.5236 degrees holds next to nothing" "0.5236 radians are 30"
+sed '/^walls/s/friction: [0-9.]*/friction_angle: 0.262/' units.yaml >radians.yaml
+expect "radians of a wall" 0 "$talus" check radians.yaml
+says err.txt "an angle of friction of 0.262 degrees holds next to nothing" "0.262 radians are 15.01"
 expect "degrees" 0 "$talus" check units.yaml --set walls[1].friction=30
 says err.txt "a coefficient of friction of 30 is an angle of 88.1 degrees" "an angle is \`friction_angle\`, in degrees"
 expect "millimetres" 0 "$talus" check units.yaml --set 'loads.gravity=[0, -9810]' --set materials.grains.young=8e5

@@ -33,6 +33,7 @@ typedef struct {
   char **bodies;     /* that meet it */
   ContactKind contact;
   PetscReal friction; /* tangent of the angle of friction */
+  PetscBool by_angle; /* was it given by the angle? */
   PetscReal adhesion; /* N/m2: tangential stress beside friction */
   PetscBool has_mass; /* does it move by what acts on it? */
   WallMassSpec mass;
@@ -47,5 +48,6 @@ typedef struct {
   char **between; /* two bodies */
   ContactKind contact;
   PetscReal friction; /* tangent of the angle of friction */
+  PetscBool by_angle; /* was it given by the angle? */
   PetscReal adhesion; /* N/m2: tangential stress beside friction */
 } InterfaceSpec;

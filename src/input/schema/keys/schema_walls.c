@@ -9,7 +9,7 @@
     KEY("friction", NUMBER, NULL, "coefficient of friction, the tangent of its angle", .note = "0", AT_LEAST(0), \
         AT(spec, friction)),                                                                                     \
     KEY("friction_angle", NUMBER, "deg", "the angle instead", .bounded = PETSC_TRUE, .min = 0, .max = 90,        \
-        .max_open = PETSC_TRUE, INPUT_ONLY, AT(spec, friction)),                                                 \
+        .max_open = PETSC_TRUE, INPUT_ONLY, AT(spec, friction), GIVEN(spec, by_angle)),                          \
     KEY("adhesion", NUMBER, "N/m2",                                                                              \
         "tangential stress that contact bears beside friction; at most 20 times the pressure", .fallback = "0",  \
         AT_LEAST(0), AT(spec, adhesion))

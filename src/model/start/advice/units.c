@@ -11,17 +11,22 @@
 #define LEANING 4            /* k0: passive pressure at 37 degrees */
 #define DEGREES (180 / PETSC_PI)
 
+static void advise_angle(const char *path, PetscReal angle, Diag *diag)
+{
+  if (angle <= 0 || angle >= NO_ANGLE) return;
+  diag_warning(diag, path, "an angle of friction of %.6g degrees holds next to nothing", (double)angle);
+  diag_hint(diag, "angles are in degrees: %.6g radians are %.4g", (double)angle, (double)(angle * DEGREES));
+}
+
 static void advise_material(const Model *m, PetscInt i, Diag *diag)
 {
   const MaterialSpec *spec = m->c->materials + i;
   const PetscReal speed = PetscSqrtReal(m->materials[i].wave_modulus / spec->density);
   char path[128];
   for (PetscInt k = 0; k < spec->n_parameters; ++k) {
-    const PetscReal angle = spec->parameters[k].value;
-    if (strcmp(spec->parameters[k].name, "friction_angle") != 0 || angle <= 0 || angle >= NO_ANGLE) continue;
+    if (strcmp(spec->parameters[k].name, "friction_angle") != 0) continue;
     snprintf(path, sizeof path, "materials.%s.friction_angle", spec->name);
-    diag_warning(diag, path, "an angle of friction of %g degrees holds next to nothing", (double)angle);
-    diag_hint(diag, "angles are in degrees: %g radians are %.4g", (double)angle, (double)(angle * DEGREES));
+    advise_angle(path, spec->parameters[k].value, diag);
   }
   if (speed <= FASTEST) return;
   snprintf(path, sizeof path, "materials.%s.density", spec->name);
@@ -29,9 +34,11 @@ static void advise_material(const Model *m, PetscInt i, Diag *diag)
   diag_hint(diag, "densities are in kg/m3, moduli in Pa, lengths in m");
 }
 
-static void advise_friction(const char *list, PetscInt k, PetscReal friction, Diag *diag)
+static void advise_friction(const char *list, PetscInt k, PetscReal friction, PetscBool by_angle, Diag *diag)
 {
   char path[64];
+  snprintf(path, sizeof path, "%s[%d].friction_angle", list, (int)k);
+  if (by_angle) advise_angle(path, PetscAtanReal(friction) * DEGREES, diag);
   if (friction <= NO_COEFFICIENT) return;
   snprintf(path, sizeof path, "%s[%d].friction", list, (int)k);
   diag_warning(diag, path, "a coefficient of friction of %g is an angle of %.3g degrees", (double)friction,
@@ -123,10 +130,11 @@ PetscErrorCode AdviseUnits(const Model *m, Diag *diag)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < m->c->n_materials; ++i) advise_material(m, i, diag);
   for (PetscInt k = 0; k < m->c->n_walls; ++k)
-    if (m->c->walls[k].contact == CONTACT_FRICTION) advise_friction("walls", k, m->c->walls[k].friction, diag);
+    if (m->c->walls[k].contact == CONTACT_FRICTION)
+      advise_friction("walls", k, m->c->walls[k].friction, m->c->walls[k].by_angle, diag);
   for (PetscInt k = 0; k < m->c->n_interfaces; ++k)
     if (m->c->interfaces[k].contact == CONTACT_FRICTION)
-      advise_friction("interfaces", k, m->c->interfaces[k].friction, diag);
+      advise_friction("interfaces", k, m->c->interfaces[k].friction, m->c->interfaces[k].by_angle, diag);
   for (PetscInt b = 0; b < m->c->n_bodies; ++b) advise_k0(m, b, diag);
   PetscCall(AdviseWeight(m, diag));
   PetscFunctionReturn(0);
