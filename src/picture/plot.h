@@ -23,6 +23,8 @@ typedef struct {
   PetscInt columns;    /* of several states; 0: chosen */
   PetscBool grid;      /* draw the grid too */
   PetscBool arrows;    /* of a vector field in the plane: arrows, too */
+  /* the longest of them in the field's own unit, and m for one of it; 0: as suits the states that are drawn */
+  PetscReal arrow_most, arrow_scale;
   PetscBool smooth;    /* means of the points around instead of what each carries */
   PetscBool bare;      /* without the outline that the body had at first, and where the grid is held */
   PetscBool animate;   /* PlotAnimate */

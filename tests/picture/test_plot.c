@@ -199,6 +199,26 @@ static void test_scalars(void **state)
   assert_int_equal(DiagDestroy(&diag), 0);
 }
 
+/* Two states, of which the second is ten times as fast: so are its arrows, and the longest is as long as suits it. */
+static void test_arrows(void **state)
+{
+  const PetscReal x[6] = {0, 0, 0, 1, 0, 0}, v[6] = {0, 1, 0, 0, 2, 0}, fast[6] = {0, 10, 0, 0, 20, 0};
+  PlotOptions options = {0};
+  PlotScene scene = {.n_frames = 2};
+  PlotFrame *slow = scene.frames, *second = scene.frames + 1;
+  (void)state;
+  assert_int_equal(PlotFrameArrows(2, x, 3, v, slow), 0);
+  assert_int_equal(PlotFrameArrows(2, x, 3, fast, second), 0);
+  plot_scale_arrows(&scene, &options);
+  assert_true(slow->n_arrows == 2 && second->n_arrows == 2 && scene.arrow_most == 20);
+  for (int k = 0; k < 2; ++k) assert_true(fabs(10 * slow->arrow[4 * k + 3] - second->arrow[4 * k + 3]) < 1e-14);
+  assert_true(fabs(second->arrow[7] - second->reach) < 1e-14);
+  plot_choose_colours(&scene, &options, "m/s", "velocity");
+  assert_non_null(strstr(scene.label, "velocity [m/s], longest arrow 20 m/s"));
+  PetscFree(slow->arrow);
+  PetscFree(second->arrow);
+}
+
 static void test_units(void **state)
 {
   char unit[64];
@@ -789,17 +809,29 @@ static void test_convergence(void **state)
 
 static int Tests(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),         cmocka_unit_test(test_quantile),
-                                     cmocka_unit_test(test_raster),          cmocka_unit_test(test_raster_depth),
-                                     cmocka_unit_test(test_raster_planes),   cmocka_unit_test(test_raster_gap),
-                                     cmocka_unit_test(test_several_states),  cmocka_unit_test(test_scalars),
-                                     cmocka_unit_test(test_units),           cmocka_unit_test(test_tick_names),
-                                     cmocka_unit_test(test_long_title),      cmocka_unit_test(test_long_label),
-                                     cmocka_unit_test(test_flat_and_small),  cmocka_unit_test(test_state_in_the_plane),
-                                     cmocka_unit_test(test_state_in_space),  cmocka_unit_test(test_body_of_revolution),
-                                     cmocka_unit_test(test_histories),       cmocka_unit_test(test_mistakes),
-                                     cmocka_unit_test(test_no_gnuplot),      cmocka_unit_test(test_animation),
-                                     cmocka_unit_test(test_names_and_cells), cmocka_unit_test(test_convergence)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_spacing),
+                                     cmocka_unit_test(test_quantile),
+                                     cmocka_unit_test(test_raster),
+                                     cmocka_unit_test(test_raster_depth),
+                                     cmocka_unit_test(test_raster_planes),
+                                     cmocka_unit_test(test_raster_gap),
+                                     cmocka_unit_test(test_several_states),
+                                     cmocka_unit_test(test_scalars),
+                                     cmocka_unit_test(test_arrows),
+                                     cmocka_unit_test(test_units),
+                                     cmocka_unit_test(test_tick_names),
+                                     cmocka_unit_test(test_long_title),
+                                     cmocka_unit_test(test_long_label),
+                                     cmocka_unit_test(test_flat_and_small),
+                                     cmocka_unit_test(test_state_in_the_plane),
+                                     cmocka_unit_test(test_state_in_space),
+                                     cmocka_unit_test(test_body_of_revolution),
+                                     cmocka_unit_test(test_histories),
+                                     cmocka_unit_test(test_mistakes),
+                                     cmocka_unit_test(test_no_gnuplot),
+                                     cmocka_unit_test(test_animation),
+                                     cmocka_unit_test(test_names_and_cells),
+                                     cmocka_unit_test(test_convergence)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 

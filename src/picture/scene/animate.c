@@ -16,6 +16,14 @@ typedef struct {
   PetscBool any;
 } Film;
 
+static void widen_arrows(PlotOptions *options, const PlotScene *scene)
+{
+  if (scene->arrow_most <= 0) return;
+  options->arrow_scale =
+    options->arrow_most > 0 ? PetscMin(options->arrow_scale, scene->arrow_scale) : scene->arrow_scale;
+  options->arrow_most = PetscMax(options->arrow_most, scene->arrow_most);
+}
+
 static PetscErrorCode Widen(Film *film, const VtkState *state, Diag *diag, PlotSubject *subject)
 {
   const PetscBool given = film->options.has_range && !film->any;
@@ -24,6 +32,7 @@ static PetscErrorCode Widen(Film *film, const VtkState *state, Diag *diag, PlotS
   PetscFunctionBeginUser;
   PlotOptions options = film->options;
   options.has_range = given;
+  options.arrow_most = 0;
   PetscCall(PlotSceneFill(&options, 1, state, subject, diag, &scene));
   if (!film->options.contours) film->options.contours = scene.contours, scene.contours = NULL;
   if (!diag_errors(diag)) {
@@ -35,6 +44,7 @@ static PetscErrorCode Widen(Film *film, const VtkState *state, Diag *diag, PlotS
     PetscReal *range = film->options.range;
     range[0] = film->any ? PetscMin(range[0], low) : low;
     range[1] = film->any ? PetscMax(range[1], high) : high;
+    widen_arrows(&film->options, &scene);
     film->any = PETSC_TRUE;
   }
   PetscCall(PlotSceneFree(&scene));

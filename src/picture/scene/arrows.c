@@ -44,10 +44,31 @@ PetscErrorCode PlotFrameArrows(PetscInt n, const PetscReal *x, PetscInt componen
     if (s->n == 0) continue;
     for (int d = 0; d < 2; ++d) {
       f->arrow[4 * f->n_arrows + d] = s->x[d] / s->n;
-      f->arrow[4 * f->n_arrows + 2 + d] = LENGTH * side * s->v[d] / s->n / most;
+      f->arrow[4 * f->n_arrows + 2 + d] = s->v[d] / s->n;
     }
     ++f->n_arrows;
   }
+  f->most = most, f->reach = LENGTH * side;
   PetscCall(PetscFree(square));
   PetscFunctionReturn(0);
+}
+
+static void choose_scale(PlotScene *scene)
+{
+  for (PetscInt k = 0; k < scene->n_frames; ++k) {
+    const PlotFrame *f = &scene->frames[k];
+    if (f->most <= 0) continue;
+    const PetscReal own = f->reach / f->most;
+    scene->arrow_scale = scene->arrow_most > 0 ? PetscMin(scene->arrow_scale, own) : own;
+    scene->arrow_most = PetscMax(scene->arrow_most, f->most);
+  }
+}
+
+void plot_scale_arrows(PlotScene *scene, const PlotOptions *options)
+{
+  if (options->arrow_most > 0) scene->arrow_scale = options->arrow_scale, scene->arrow_most = options->arrow_most;
+  else choose_scale(scene);
+  for (PetscInt k = 0; k < scene->n_frames; ++k)
+    for (PetscInt i = 0; i < scene->frames[k].n_arrows; ++i)
+      for (int d = 0; d < 2; ++d) scene->frames[k].arrow[4 * i + 2 + d] *= scene->arrow_scale;
 }

@@ -38,6 +38,17 @@ static void find_range(PlotScene *scene)
   if (scene->low > scene->high) scene->low = 0, scene->high = 1;
 }
 
+/* "velocity [m/s]", and how long arrows are. */
+static void write_label(PlotScene *scene, const char *what, const char *unit)
+{
+  const size_t size = sizeof scene->label;
+  if (unit[0]) snprintf(scene->label, size, "%.60s [%s]", what, unit);
+  const size_t used = strlen(scene->label);
+  if (scene->arrow_most > 0)
+    snprintf(scene->label + used, size - used, ", longest arrow %.3g%s%s", (double)(scene->arrow_most * scene->factor),
+             unit[0] ? " " : "", unit);
+}
+
 void plot_choose_colours(PlotScene *scene, const PlotOptions *options, const char *unit, const char *what)
 {
   char prefixed[64];
@@ -53,7 +64,7 @@ void plot_choose_colours(PlotScene *scene, const PlotOptions *options, const cha
   scene->low *= factor, scene->high *= factor;
   const PetscReal middle = 0.5 * (scene->low + scene->high), least = middle != 0 ? 1e-2 * fabs(middle) : 1e-12;
   if (scene->high - scene->low < 1e-4 * least) scene->low = middle - least, scene->high = middle + least;
-  if (prefixed[0]) snprintf(scene->label, sizeof scene->label, "%.60s [%s]", what, prefixed);
+  write_label(scene, what, prefixed);
 }
 
 void plot_find_names(const PlotScene *scene, PetscBool there[PLOT_MAX_NAMES])

@@ -26,7 +26,8 @@ typedef struct {
   PetscReal *corner, *corner_value; /* n_triangles x 3 x 3 and x 3: cells of fem, as RasterScene has them */
   unsigned char *side;
   PetscInt n_arrows;
-  PetscReal *arrow; /* n_arrows x 4: where they begin, and how far they go, m */
+  PetscReal *arrow;      /* n_arrows x 4: where they begin, and how far they go, m */
+  PetscReal most, reach; /* of the longest one: in the unit of the field, and as long as suits this frame, m */
   PetscInt n_lines;
   PetscReal *line; /* n_lines x 2 x 3: walls in space */
   PetscInt n_faces;
@@ -67,17 +68,19 @@ typedef struct {
   char label[128];     /* of the colours, with the unit */
   PetscReal low, high; /* of the colours, in the unit that is shown: `factor` times the field's own */
   PetscReal factor;
-  PetscBool named;      /* values are numbers of bodies or materials: they have names instead */
-  PetscBool grid;       /* lines of the cells */
-  PetscBool arrows;     /* of a vector field in the plane */
-  PetscBool smooth;     /* fields are means of the points around */
-  PetscBool bare;       /* without the first outline, and where the grid is held */
-  PetscReal gap;        /* how far apart points stand in the first frame, m */
-  PetscInt up;          /* axis that points up, in space */
-  PetscBool revolution; /* x is a radius */
-  PetscBool mirrored;   /* both sides of the axis x = 0 are there, the other one as x < 0 */
-  PetscBool turned;     /* in space, of points that lie in the plane, on both sides */
-  Case *walled;         /* the run's case, with walls and names; NULL: it cannot be read */
+  PetscBool named;       /* values are numbers of bodies or materials: they have names instead */
+  PetscBool grid;        /* lines of the cells */
+  PetscBool arrows;      /* of a vector field in the plane */
+  PetscReal arrow_most;  /* the longest one of all frames, in the field's own unit; 0: there are none */
+  PetscReal arrow_scale; /* m on the page for one of that unit */
+  PetscBool smooth;      /* fields are means of the points around */
+  PetscBool bare;        /* without the first outline, and where the grid is held */
+  PetscReal gap;         /* how far apart points stand in the first frame, m */
+  PetscInt up;           /* axis that points up, in space */
+  PetscBool revolution;  /* x is a radius */
+  PetscBool mirrored;    /* both sides of the axis x = 0 are there, the other one as x < 0 */
+  PetscBool turned;      /* in space, of points that lie in the plane, on both sides */
+  Case *walled;          /* the run's case, with walls and names; NULL: it cannot be read */
   Walls *walls;
   PlotContours *contours;           /* of bodies of meshes, in the plane; NULL */
   PetscBool borrowed;               /* are they those of the options? */
@@ -187,6 +190,8 @@ RasterHeld plot_shape_holds(const void *of, PetscInt p, const PetscReal *x);
 PetscBool plot_bodies_hold(const PlotOutline *outline, const PetscReal *x);
 PetscErrorCode PlotFramesFree(PlotScene *scene);
 
-/* arrows.c. Arrows of n points (x: n x 3) with vectors v (n x components). */
+/* arrows.c. Arrows of n points (x: n x 3) with vectors v (n x components), as long as these yet. */
 PetscErrorCode PlotFrameArrows(PetscInt n, const PetscReal *x, PetscInt components, const PetscReal *v,
                                PlotFrame *frame);
+/* One scale for those of all frames: that of the options, or by which none is longer than suits its frame. */
+void plot_scale_arrows(PlotScene *scene, const PlotOptions *options);

@@ -297,6 +297,7 @@ PetscErrorCode PlotSceneFill(const PlotOptions *options, PetscInt n, const VtkSt
     else snprintf(title, 256, "%s", when);
   }
   if (diag_errors(diag)) PetscFunctionReturn(0);
+  plot_scale_arrows(scene, options);
   plot_choose_colours(scene, options, subject->field.unit, subject->words);
   PetscCall(TakeContours(options, scene));
   PetscCall(PlotFramesShape(scene));
