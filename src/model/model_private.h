@@ -289,6 +289,10 @@ PetscErrorCode JudgeStep(const Model *model, StepReport *report);
 /* Collective. In statics each body must be held in all directions, by itself or by others that it
  * touches. */
 PetscErrorCode CheckHeld(Model *model, Diag *diag);
+/* Collective. Of each body the directions in which something holds it (n_bodies x dim, zero on entry). */
+PetscErrorCode FindHeld(const Model *model, PetscInt *held);
+/* rests.c. Collective. A warning for each body whose weight nothing but friction along walls bears. */
+PetscErrorCode AdviseRests(const Model *model, Diag *diag);
 /* Collective. of (n_nodes, 0 on entry): of the bodies that share nodes, directly or through others, the first one's
  * number from 1 on, where they touch the node. */
 PetscErrorCode JoinedBodies(const Model *model, PetscReal *of);

@@ -89,4 +89,28 @@ says out.txt "warning = the initial stress is beyond the strength at "
 lacks out.txt "more than no stress would"
 expect "no stress, gravity at once" 0 "$talus" run ground.yaml --out ground --force --set initial.equilibrium=direct
 lacks out.txt "more than no stress would"
+# A floor that the soil does not reach: the wall beside it rubs, and is not what bears it.
+cat >retained.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 2}
+grid: {box: {min: [-1, -1], max: [6, 4]}, size: 0.5}
+bodies: [{name: soil, shape: {box: {min: [0, 0], max: [6, 3]}}, points_per_cell: 4, material: sand, k0: 0.5}]
+materials: {sand: {law: mohr-coulomb, density: 1700, young: 30e6, poisson: 0.3, friction_angle: 32, cohesion: 200}}
+boundary: [{on: {boundary: right}, fix: [x]}]
+walls:
+  - {name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, friction_angle: 25}
+  - {name: wall, shape: {box: {min: [-0.6, -1], max: [0, 4]}}, friction_angle: 15}
+loads: {gravity: [0, -9.81]}
+END
+for ranks in 1 2 3; do
+  expect "a gap below, $ranks ranks" 0 on_ranks $ranks "$talus" check retained.yaml --set 'walls[0].shape.half-space.point=[0, -0.03]'
+  says err.txt "retained.yaml:5:10: warning: nothing but friction bears the weight of 'soil'" "wall 'floor' is below, 0.03 m away from it"
+done
+expect "nothing below" 0 "$talus" check retained.yaml --set 'walls[0].shape.half-space={point: [-1, 0], normal: [1, 0]}'
+says err.txt "nothing but friction bears the weight of 'soil'" "put a wall below it, or fix a boundary in y"
+expect "it sticks" 0 "$talus" check retained.yaml --set 'walls[0].shape.half-space.point=[0, -0.03]' --set 'walls[1]={name: wall, shape: {box: {min: [-0.6, -1], max: [0, 4]}}, contact: stick}'
+lacks err.txt "nothing but friction"
+expect "a floor" 0 "$talus" check retained.yaml
+lacks err.txt "nothing but friction"
 finish

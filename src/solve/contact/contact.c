@@ -97,10 +97,10 @@ static void hold(const void *data, const NodalScene *scene, unsigned char *held)
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) largest = PetscMax(largest, last_of(c));
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     if (!contact_touched(c) || contact_rigid(s, c) || (s->over && last_of(c) < NEXT_TO_NOTHING * largest)) continue;
+    const PetscBool slides = c->law.kind == CONTACT_FRICTIONLESS || (s->slips && c->law.kind == CONTACT_FRICTION);
     for (PetscInt e = c->first; e < c->first + c->n; ++e)
       for (PetscInt d = 0; d < s->dim; ++d)
-        if (c->law.kind != CONTACT_FRICTIONLESS || PetscAbsReal(c->normal[d]) > LEANS)
-          held[s->node[e] * s->dim + d] = 1;
+        if (!slides || PetscAbsReal(c->normal[d]) > LEANS) held[s->node[e] * s->dim + d] = 1;
   }
 }
 

@@ -114,6 +114,7 @@ typedef struct Contact {
   PetscBool adheres; /* does anything, in implicit steps and statics? */
   PetscBool grips;   /* for a first guess: what was in contact goes along with its wall */
   PetscBool over;    /* is the run over? What bears nothing holds nothing then */
+  PetscBool slips;   /* is it asked what friction does not hold? */
   /* n_partners x n_bodies: of friction and adhesion where that body meets this partner; 0: it does not slide */
   PetscReal *divisor;
   WallState *wall;

@@ -101,8 +101,7 @@ static void name_directions(PetscInt dim, const PetscInt *held, char text[32])
   }
 }
 
-/* Of each body the directions in which something holds it. */
-static PetscErrorCode FindHeld(const Model *m, PetscInt *held)
+PetscErrorCode FindHeld(const Model *m, PetscInt *held)
 {
   const PetscInt n = m->c->n_bodies;
   PetscInt *joined;
@@ -176,6 +175,7 @@ PetscErrorCode CheckHeld(Model *m, Diag *diag)
   PetscCall(ModelCountPoints(m, &points));
   if ((m->scheme->inertia && !case_equilibrates(m->c)) || !points) PetscFunctionReturn(0);
   PetscCall(TellLoose(m, PETSC_FALSE, diag));
+  PetscCall(AdviseRests(m, diag));
   PetscFunctionReturn(0);
 }
 
