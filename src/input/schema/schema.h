@@ -177,6 +177,12 @@ PetscBool schema_fits(const SchemaReader *r, const SchemaEntry *entry);
  * of the file, or that is a part of a known one; PETSC_FALSE and nothing: there are none, or many
  * (schema_elsewhere.c). */
 PetscBool schema_hint_elsewhere(SchemaReader *r, const SchemaTable *table, const char *key);
+/* "write `of: {boundary: base}`", where a name stands in place of the mapping in which it belongs; PETSC_FALSE and
+ * nothing: nothing at the top of the file that the table's keys refer to has that name. */
+PetscBool schema_hint_name(SchemaReader *r, const SchemaTable *table, const YamlNode *node);
+/* What others call one of these n words, or what is not there at all; PETSC_FALSE and nothing: it is neither
+ * (schema_synonyms.c). */
+PetscBool schema_hint_synonym(SchemaReader *r, const char *word, PetscInt n, const char *const *words);
 /* "did you mean 'x'?", or the list of all. */
 void schema_hint_words(SchemaReader *r, const char *word, PetscInt n, const char *const *words);
 /* Read a vector of dim numbers without messages; returns how many there were. */

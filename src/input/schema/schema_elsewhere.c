@@ -114,3 +114,25 @@ PetscBool schema_hint_elsewhere(SchemaReader *r, const SchemaTable *table, const
     add_ways(r, &schema_case, key, depth, &none, &elsewhere);
   return tell(r, "it belongs elsewhere in the file: ", &elsewhere);
 }
+
+static PetscBool has_name(const YamlNode *list, const char *name)
+{
+  for (PetscInt i = 0; list && i < list->n; ++i) {
+    const YamlNode *its = yaml_find(list->child[i], "name");
+    if (its && its->kind == YAML_SCALAR && !strcmp(its->text, name)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+PetscBool schema_hint_name(SchemaReader *r, const SchemaTable *table, const YamlNode *node)
+{
+  Ways ways = {0};
+  SchemaEntry entry;
+  for (PetscInt i = 0; node->key && (entry = schema_entry(table, i)).key; ++i) {
+    const char *list = entry.type == TYPE_BOUNDARY ? "boundary" : entry.type == TYPE_REFERENCE ? entry.target : NULL;
+    if (!list || !has_name(yaml_find(r->document->root, list), node->text)) continue;
+    if (ways.n < MOST) snprintf(ways.text[ways.n], ROOM, "%.24s: {%.24s: %.60s}", node->key, entry.key, node->text);
+    ++ways.n;
+  }
+  return tell(r, "write ", &ways);
+}

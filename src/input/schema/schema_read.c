@@ -91,6 +91,7 @@ static PetscErrorCode UnknownKeys(SchemaReader *r, const SchemaTable *table, con
       if (!strcmp(child->key, "sphere")) diag_hint(r->diag, "in two dimensions there is 'circle'");
     } else {
       SchemaKeyError(r, child, "key '%s' of %s is not known", child->key, yaml_path(mapping, path, sizeof(path)));
+      if (schema_hint_synonym(r, child->key, n, words)) continue;
       if (diag_nearest(child->key, words) || !schema_hint_elsewhere(r, table, child->key))
         schema_hint_words(r, child->key, n, words);
     }
@@ -223,7 +224,8 @@ static PetscErrorCode ReadNested(SchemaReader *r, const SchemaEntry *entry, cons
   PetscFunctionBeginUser;
   if (schema_is(r, entry, node, YAML_MAPPING, 0))
     PetscCall(SchemaReadTable(r, entry->table, node, (char *)target + entry->offset));
-  else if (node->kind == YAML_SCALAR) schema_hint_words(r, NULL, words_of(r, entry->table, words), words);
+  else if (node->kind == YAML_SCALAR && !schema_hint_name(r, entry->table, node))
+    schema_hint_words(r, NULL, words_of(r, entry->table, words), words);
   PetscFunctionReturn(0);
 }
 

@@ -99,7 +99,7 @@ static void unknown_key(SchemaReader *r, const Law *law, const YamlNode *mapping
        p && p->name && n < LAW_MAX_PARAMETERS + ELASTIC_CONSTANTS + 7; ++p)
     words[n++] = p->name;
   SchemaKeyError(r, node, "key '%s' of %s is not known", node->key, yaml_path(mapping, path, sizeof(path)));
-  schema_hint_words(r, node->key, n, words);
+  if (!schema_hint_synonym(r, node->key, n, words)) schema_hint_words(r, node->key, n, words);
 }
 
 static PetscErrorCode ReadConstants(SchemaReader *r, const Law *law, const YamlNode *mapping, MaterialSpec *material)
