@@ -23,6 +23,10 @@ expect "check of a body outside" 2 "$talus" check beam/case.yaml --set 'bodies[0
   --set 'bodies[0].shape.box.max=[28, 1]'
 expect "check of a wrong boundary" 2 "$talus" check beam/case.yaml --set 'boundary[0].on={boundary: lefd}'
 expect "check of two cases" 2 "$talus" check beam/case.yaml other.yaml
+expect "one format, twice" 2 "$talus" plot nowhere --animate --format gif --out film.gif
+lacks err.txt "is the format"
+expect "two formats" 2 "$talus" plot nowhere --animate --format mp4 --out film.gif
+says err.txt "the ending of 'film.gif' is the format"
 expect "plot of two runs" 2 "$talus" plot two set three
 
 # reference TIP [SETTING]: the beam's tip must be TIP

@@ -18,7 +18,7 @@ for size in 640x480 481x333; do
 done
 
 # The film shows what the GIF shows: its last frame in grey, to a few parts of 255.
-expect "a GIF" 0 "$talus" plot run --animate --size 640x480 --out film.gif
+expect "a GIF" 0 "$talus" plot run --animate --size 640x480 --format gif --out film.gif
 expect "a film again" 0 "$talus" plot run --animate --size 640x480 --out film.mp4
 for kind in gif mp4; do ffmpeg -v error -y -i film.$kind -vf "select=eq(n\,$((states - 1)))" -frames:v 1 -f rawvideo -pix_fmt gray $kind.raw; done
 apart=$(cmp -l gif.raw mp4.raw | awk '{ a = int($2 / 100) * 64 + int($2 / 10) % 10 * 8 + $2 % 10; b = int($3 / 100) * 64 + int($3 / 10) % 10 * 8 + $3 % 10; s += (a - b) ^ 2 }

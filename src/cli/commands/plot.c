@@ -167,7 +167,7 @@ static PetscErrorCode UnderstandOutput(const CliArguments *arguments, PetscBool 
   PetscCall(CliOneOf("format", format, known, ok, exit_code));
   if (!*ok) PetscFunctionReturn(0);
   *ok = PETSC_FALSE;
-  if (out && format)
+  if (out && format && !(ending && !strcasecmp(ending + 1, format)))
     PetscCall(CliUsageError(exit_code, NULL, "--out and --format: the ending of '%s' is the format", out));
   else if ((ending && ending != out && !is_one_of(ending + 1, known)) || (film && out && !ending))
     PetscCall(CliUsageError(exit_code, film ? "there are .gif and .mp4" : "there are .png, .svg and .pdf",
