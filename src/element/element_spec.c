@@ -264,6 +264,28 @@ static void check_bulk(const ElementSpec *spec, Diag *diag)
   diag_hint(diag, "give it a volume that changes a little (poisson: 0.49), and drive it undrained");
 }
 
+/* Is it per cent? Of a logarithmic strain of 1 a third of the length is left. */
+static void check_strain(const char *where, PetscReal strain, Diag *diag)
+{
+  if (PetscAbsReal(strain) <= 1) return;
+  diag_warning(diag, NULL, "%s goes to a logarithmic strain of %g: to %.2g times the length", where, (double)strain,
+               (double)PetscExpReal(strain));
+  diag_hint(diag, "strains are no per cent: 5 %% is 0.05");
+}
+
+static void check_strains(const ElementSpec *spec, Diag *diag)
+{
+  char where[96];
+  for (PetscInt i = 0; i < spec->n_stages && !diag_errors(diag); ++i) {
+    const ElementStage *s = &spec->stages[i];
+    const PetscBool lengthens = (PetscBool)(s->test && s->test->component < 3 && !s->test->isotropic);
+    snprintf(where, sizeof where, "part %d of the path, %.60s,", (int)i + 1, s->test ? s->test->name : "strain");
+    if (lengthens) check_strain(where, s->test->sign * s->to, diag);
+    for (int k = 0; k < 3 && !s->test; ++k)
+      if (s->strain.given[k]) check_strain(where, s->strain.value[k], diag);
+  }
+}
+
 /* Of a case: which case, material and test. */
 static PetscErrorCode NameIt(const ElementOptions *o, ElementSpec *s)
 {
@@ -290,6 +312,7 @@ PetscErrorCode ElementRead(const ElementOptions *o, Diag *diag, ElementSpec **sp
   if (o->test) PetscCall(ReadCase(o, diag, s));
   else PetscCall(ReadFile(o, diag, s));
   check_bulk(s, diag);
+  check_strains(s, diag);
   if (!diag_errors(diag)) PetscCall(NameIt(o, s));
   if (diag_errors(diag)) PetscCall(ElementSpecDestroy(spec));
   PetscFunctionReturn(0);

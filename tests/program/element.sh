@@ -98,4 +98,12 @@ says err.txt "talus has not written"
 [ "$(cat e/element.csv)" = mine ] || fail "$name: it is gone"
 expect "by force" 0 "$talus" element sand.yaml --out e --force
 [ "$(wc -l <e/element.csv)" -eq 22 ] || fail "$name: no table"
+
+# Per cent for a strain
+sed 's/to: 0.02, /to: 2, /' sand.yaml >cent.yaml
+"$talus" element cent.yaml --out cent >out.txt 2>err.txt
+name="per cent"
+says err.txt "goes to a logarithmic strain of -2: to 0.14 times the length" "5 % is 0.05"
+expect "strains" 0 "$talus" element sand.yaml --out cent --force
+lacks err.txt "warning"
 finish
