@@ -49,6 +49,10 @@ static PetscInt bounds(const Figure *figure, PetscReal min[N_AXES], PetscReal ma
     min[AXIS_LEFT] = PetscMin(min[AXIS_LEFT], figure->bands[b].low);
     max[AXIS_LEFT] = PetscMax(max[AXIS_LEFT], figure->bands[b].high);
   }
+  if (figure->from < figure->to && n[AXIS_X] > 0) {
+    min[AXIS_X] = PetscMin(min[AXIS_X], figure->from);
+    max[AXIS_X] = PetscMax(max[AXIS_X], figure->to);
+  }
   return n[AXIS_X];
 }
 

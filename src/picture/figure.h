@@ -23,6 +23,7 @@ typedef struct {
   const char *title, *x_label, *y_label; /* NULL: none */
   const char *right_label;               /* of the right axis; NULL: there is none */
   PetscBool log_x, log_y;
+  PetscReal from, to; /* the axis of x reaches there at least; from >= to: as far as curves do */
   PetscInt n_series;
   const FigureSeries *series;
   PetscInt n_bands;

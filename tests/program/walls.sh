@@ -60,6 +60,15 @@ expect "profile" 0 "$talus" plot whole --profile floor
 awk -F, 'NR > 1 {n++; sum += $4; if ($1 < last) bad = 1; last = $1} END {exit bad || n != 16 || sum / n < 4500 || sum / n > 5300}' \
   whole/pictures/profile_floor.csv || fail "$name: $(cat whole/pictures/profile_floor.csv)"
 [ -s whole/pictures/profile_floor.png ] || fail "$name: no picture"
+# Half of the floor below the body feels nothing: the axis shows all of it. gnuplot is one that keeps what it is told.
+mkdir bin
+printf '#!/bin/sh\ncat >script.txt\n' >bin/gnuplot
+chmod +x bin/gnuplot
+expect "a step" 0 "$talus" run case.yaml --out step --quiet --set analysis.end=0.05 \
+  --set 'bodies[0].shape={union: [{box: {min: [0, 0.75], max: [1, 1]}}, {box: {min: [0.5, 0.25], max: [1, 0.75]}}]}'
+PATH="$PWD/bin:$PATH" "$talus" plot step --profile floor >out.txt 2>err.txt
+awk '/set xrange/ {found = 1; gsub(/[][]/, ":"); split($0, x, ":"); if (!(x[2] > 0 && x[2] < 0.1 && x[3] > 0.9)) bad = 1} END {exit bad || !found}' script.txt ||
+  fail "a step: $(grep xrange script.txt)"
 expect "no such wall" 2 "$talus" plot whole --profile flor
 says err.txt "the run 'whole' has no wall 'flor'" "did you mean 'floor'?"
 expect "nothing touches" 2 "$talus" plot whole --profile gate

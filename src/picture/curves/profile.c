@@ -7,10 +7,13 @@
 #include "output/vtk/vtk_series.h"
 #include "picture/figure.h"
 #include "picture/plot.h"
+#include "wall/wall.h"
 
-/* What touches the wall, in the order of the coordinate along which it reaches farthest. */
+/* What touches the wall, in the order of the coordinate along which it reaches farthest; of that coordinate, what the
+ * wall and all bodies share (span[0] >= span[1]: not known). */
 typedef struct {
   PetscInt n, along;
+  PetscReal span[2];
   PetscReal *x, *pressure, *shear; /* n x 3, n, n x 3 */
 } Profile;
 
@@ -146,9 +149,69 @@ static PetscErrorCode DrawProfile(const Profile *p, PetscBool space, const char 
   const FigureStyle style = space ? FIGURE_DOTS : FIGURE_LINE_MARKS;
   const FigureSeries series[] = {{.name = "pressure", .style = style, .n = p->n, .x = x, .y = value[0]},
                                  {.name = "shear", .style = style, .n = p->n, .x = x, .y = value[1]}};
-  const Figure figure = {.title = title, .x_label = axis, .y_label = label, .n_series = 2, .series = series};
+  const Figure figure = {.title = title,
+                         .x_label = axis,
+                         .y_label = label,
+                         .from = p->span[0],
+                         .to = p->span[1],
+                         .n_series = 2,
+                         .series = series};
   PetscCall(FigureWrite(&figure, png, diag, done));
   PetscCall(PetscFree3(x, value[0], value[1]));
+  PetscFunctionReturn(0);
+}
+
+/* How far points reach along the axis, in the state of that time. */
+static PetscErrorCode PointsSpan(const char *run, PetscReal time, PetscInt along, PetscReal span[2])
+{
+  char path[FILE_PATH + 256], reason[256];
+  VtkSeries series;
+  VtkFile *file;
+  PetscReal *x;
+
+  PetscFunctionBeginUser;
+  if (VtkSeriesRead(run, "points", &series, reason)) PetscFunctionReturn(0);
+  for (PetscInt k = 0; k < series.n; ++k) {
+    if (series.states[k].time != time) continue;
+    PetscCall(PetscSNPrintf(path, sizeof path, "%s/%s", run, series.states[k].file));
+    if (VtkReadOpen(path, &file, reason)) break;
+    if (!VtkReadCoordinates(file, &x, reason)) {
+      for (PetscInt i = 0; i < vtk_read_points(file); ++i) {
+        span[0] = PetscMin(span[0], x[3 * i + along]);
+        span[1] = PetscMax(span[1], x[3 * i + along]);
+      }
+      PetscCall(PetscFree(x));
+    }
+    PetscCall(VtkReadClose(&file));
+    break;
+  }
+  PetscCall(VtkSeriesFree(&series));
+  PetscFunctionReturn(0);
+}
+
+/* Where a wall stands beside a body and feels nothing, a curve has nothing: the axis shows it. */
+static PetscErrorCode FindSpan(const PlotOptions *options, PetscInt wall, PetscReal time, Profile *p)
+{
+  PetscReal points[2] = {PETSC_MAX_REAL, -PETSC_MAX_REAL}, min[3], max[3];
+  char path[FILE_PATH];
+  Walls *walls = NULL;
+  Case *c = NULL;
+  Diag *own;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/case.yaml", options->run));
+  PetscCall(DiagCreate(&own));
+  PetscCall(CaseRead(PETSC_COMM_SELF, path, 0, NULL, own, &c));
+  if (c) PetscCall(WallsCreate(c, own, &walls));
+  if (walls) {
+    PetscCall(PointsSpan(options->run, time, p->along, points));
+    wall_bounds(walls, wall, time, min, max);
+    p->span[0] = PetscMax(points[0], min[p->along]);
+    p->span[1] = PetscMin(points[1], max[p->along]);
+  }
+  PetscCall(WallsDestroy(&walls));
+  PetscCall(CaseDestroy(&c));
+  PetscCall(DiagDestroy(&own));
   PetscFunctionReturn(0);
 }
 
@@ -227,6 +290,7 @@ PetscErrorCode PlotProfile(const PlotOptions *options, Diag *diag, void (*said)(
   PetscCall(PetscSNPrintf(path, sizeof path, "%s/pictures/%s.csv", options->run, name));
   if (!p.n) diag_error(diag, NULL, "nothing touches the wall '%s' at %g s", options->profile, (double)state.time);
   else if (plot_folder(options->run, diag) && write_table(&p, path, diag)) {
+    PetscCall(FindSpan(options, wall, state.time, &p));
     said(path);
     PetscCall(PetscSNPrintf(path, sizeof path, "%s/pictures/%s.%s", options->run, name, plot_ending(options->format)));
     PetscCall(DrawProfile(&p, space, title, options->out ? options->out : path, diag, &done));
