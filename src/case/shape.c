@@ -1,5 +1,6 @@
 #include "case/case.h"
 #include "case/terrain/relief.h"
+#include "case/shape_corners.h"
 
 static PetscBool box_contains(const Shape *s, PetscInt dim, const PetscReal *x, PetscReal tolerance)
 {
@@ -203,6 +204,7 @@ void shape_bounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[
   case SHAPE_INTERSECTION:
     children_bounds(s, dim, min, max);
     if (s->kind == SHAPE_DIFFERENCE) raise_to_terrain(s, min, max);
+    if (s->kind == SHAPE_INTERSECTION) corner_bounds(s, dim, min, max);
     break;
   default: break; /* of walls alone */
   }

@@ -5,6 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include "case/case.h"
+#include "case/shape_volume.h"
 
 #define ASSERT_NEAR(a, b, tolerance) assert_true(PetscAbsReal((a) - (b)) <= (tolerance))
 
@@ -142,14 +143,41 @@ static void UnionAndIntersection(void **state)
   ASSERT_NEAR(max[1], 1, 0);
 }
 
+/* Half-spaces askew cut a box to something smaller: a square on its corner, in the plane and as a prism; a tetrahedron. */
+static void Askew(void **state)
+{
+  Shape parts[5] = {{.kind = SHAPE_BOX, .min = {-5, -5, 0}, .max = {9, 9, 2}},
+                    {.kind = SHAPE_HALF_SPACE, .point = {1, 0, 0}, .normal = {1, 1, 0}},
+                    {.kind = SHAPE_HALF_SPACE, .point = {1, 0, 0}, .normal = {1, -1, 0}},
+                    {.kind = SHAPE_HALF_SPACE, .point = {-1, 0, 0}, .normal = {-2, 2, 0}},
+                    {.kind = SHAPE_HALF_SPACE, .point = {-1, 0, 0}, .normal = {-1, -1, 0}}};
+  const Shape square = {.kind = SHAPE_INTERSECTION, .n_children = 5, .children = parts};
+  Shape corner[2] = {{.kind = SHAPE_BOX, .min = {0, 0, 0}, .max = {4, 4, 1}},
+                     {.kind = SHAPE_HALF_SPACE, .point = {0, 0, 3}, .normal = {1, 1, 1}}};
+  const Shape cut = {.kind = SHAPE_INTERSECTION, .n_children = 2, .children = corner};
+  PetscReal min[3], max[3];
+  (void)state;
+  for (PetscInt dim = 2; dim <= 3; ++dim) {
+    shape_bounds(&square, dim, min, max);
+    for (int d = 0; d < 2; ++d) {
+      ASSERT_NEAR(min[d], -1, 1e-14);
+      ASSERT_NEAR(max[d], 1, 1e-14);
+    }
+    ASSERT_NEAR(max[2], dim == 3 ? 2 : 0, 0);
+    const PetscReal area = shape_volume(&square, dim == 2 ? &kinematics_plane_strain : &kinematics_3d, min, max);
+    ASSERT_NEAR(area, dim == 3 ? 4 : 2, 1e-3);
+  }
+  shape_bounds(&cut, 3, min, max);
+  ASSERT_NEAR(max[0], 3, 1e-14);
+  ASSERT_NEAR(max[1], 3, 1e-14);
+  ASSERT_NEAR(max[2], 1, 0);
+}
+
 int main(void)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Box),
-                                     cmocka_unit_test(Ball),
-                                     cmocka_unit_test(Polygon),
-                                     cmocka_unit_test(HalfSpace),
-                                     cmocka_unit_test(CylinderAndCone),
-                                     cmocka_unit_test(Difference),
-                                     cmocka_unit_test(UnionAndIntersection)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Askew),      cmocka_unit_test(Box),
+                                     cmocka_unit_test(Ball),       cmocka_unit_test(Polygon),
+                                     cmocka_unit_test(HalfSpace),  cmocka_unit_test(CylinderAndCone),
+                                     cmocka_unit_test(Difference), cmocka_unit_test(UnionAndIntersection)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
