@@ -18,10 +18,8 @@ typedef struct {
   PetscReal p[CELL_MAX_NODES], fp[CELL_MAX_NODES];
   PetscReal Kup[3 * CELL_MAX_NODES * CELL_MAX_NODES], Kpu[3 * CELL_MAX_NODES * CELL_MAX_NODES];
   PetscReal Kpp[CELL_MAX_NODES * CELL_MAX_NODES];
-  PetscReal x[3 * CELL_MAX_NODES]; /* nn x dim, where the step begins */
-  PetscReal swift;                 /* inertia of the cell's own shortest waves, over density: m2/s2 */
-  PetscReal hold;                  /* what holds pressures that vary inside the cell, m3/Pa, */
-  PetscReal weight;                /* but as weight makes them vary: times density, kg/Pa */
+  PetscReal hold;   /* what holds pressures that vary inside the cell, m3/Pa, */
+  PetscReal weight; /* but as weight makes them vary: times density, kg/Pa */
 } MixedWork;
 
 KERNEL void mixed_load(const int dim, const int nn, const WeakFormInput *in, PetscInt group, MixedWork *w)
@@ -32,21 +30,21 @@ KERNEL void mixed_load(const int dim, const int nn, const WeakFormInput *in, Pet
   for (int i = 0; i < width; ++i) w->fp[i] = 0;
   for (int i = 0; i < nn * width; ++i) w->Kpp[i] = 0;
   for (int i = 0; i < dim * nn * width; ++i) w->Kup[i] = w->Kpu[i] = 0;
-  for (int I = 0; I < nn; ++I)
-    for (int d = 0; d < dim; ++d) w->x[I * dim + d] = in->x[cell_nodes(in, group)[I] * dim + d];
-  w->swift = pressure_swiftness(dim, nn, w->x, in->inertia);
   w->hold = in->pressure_tie ? in->pressure_tie[group] : 0;
   w->weight = 0;
 }
 
 /* The projection's integral is that over the cell, whatever the number of its points. */
-KERNEL void mixed_project(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in, MixedWork *w)
+KERNEL void mixed_project(const int dim, const int nn, const PetscBool hoop, const WeakFormInput *in, PetscInt group,
+                          MixedWork *w)
 {
+  const PetscInt *node = cell_nodes(in, group);
   const PetscReal hold = w->hold * in->pressure_scale * in->pressure_scale, weight = w->weight * in->pressure_scale;
   PetscReal radius[CELL_MAX_NODES], P[CELL_MAX_NODES * CELL_MAX_NODES], depth[CELL_MAX_NODES];
   for (int I = 0; I < nn; ++I) {
-    radius[I] = w->x[I * dim];
-    depth[I] = pressure_depth(dim, in->gravity, w->x + I * dim);
+    const PetscReal *x = in->x + node[I] * dim;
+    radius[I] = x[0];
+    depth[I] = pressure_depth(dim, in->gravity, x, w->u.du + I * dim);
   }
   if (hoop) ring_projection(nn, radius, P);
   for (int I = 0; I < nn; ++I)
@@ -54,6 +52,8 @@ KERNEL void mixed_project(const int dim, const int nn, const PetscBool hoop, con
       if (!hoop) P[I * nn + J] = projection_entry(dim, nn, I, J);
       w->fp[I] -= P[I * nn + J] * (hold * w->p[J] + weight * depth[J]);
       w->Kpp[I * row_width(nn) + J] -= hold * P[I * nn + J];
+      for (int d = 0; !in->symmetric && d < dim; ++d)
+        w->Kpu[(I * dim + d) * row_width(nn) + J] -= weight * P[I * nn + J] * in->gravity[d];
     }
 }
 
@@ -78,7 +78,7 @@ KERNEL void mixed_store(const int dim, const int nn, const PetscBool hoop, const
 {
   const PetscInt *node = cell_nodes(in, group);
   cell_close(dim, nn, in, group, out->values != NULL, &w->u);
-  mixed_project(dim, nn, hoop, in, w);
+  mixed_project(dim, nn, hoop, in, group, w);
   if (out->values) mixed_scatter(dim, nn, out->slot + slot, w, out->values);
   cell_give_force(dim, nn, node, &w->u, out->force);
   for (int I = 0; I < nn; ++I)
@@ -109,9 +109,9 @@ KERNEL void add_point(const int dim, const int nn, const PetscBool hoop, const W
   add_internal_force(dim, nn, hoop, run.g[0], b->s.tau + 6 * k, volume, w->u.f);
   add_mass(nn, N, mass, lumping, w->u.M);
   row_add(nn, scaled * (b->s.theta[k] - b->p[k] * material->compliance), N, w->fp);
-  const PetscReal hold = pressure_hold(in->alpha / material->elastic.shear, mass / volume, w->swift);
-  w->hold += hold * volume;
-  w->weight += hold * mass;
+  const PetscReal softness = in->alpha / material->elastic.shear;
+  w->hold += softness * volume;
+  w->weight += softness * mass;
   if (!tangent) return;
   add_stiffness(dim, nn, hoop, PETSC_FALSE, &run, w->u.K);
   add_pressure_force(dim, nn, hoop, run.g[0], b->s.coupling + 6 * k, N, scaled, w->Kup);

@@ -75,10 +75,21 @@ KERNEL void hold_pressure(const int dim, const WeakFormInput *in, const PetscInt
   if (out->values) out->values[((size_t)slot[I * w->nn + J] + 1) * size * size - 1] -= entry;
 }
 
+/* The same of the weight that these pressures bear, N over density and pressure: depth is that of J. */
+KERNEL void weigh_pressure(const int dim, const WeakFormInput *in, const PetscInt *slot, const CloudWork *w, PetscInt I,
+                           PetscInt J, PetscReal entry, PetscReal depth, WeakFormOutput *out)
+{
+  const int size = dim + 1;
+  if (out->volume) out->volume[w->node[I]] -= entry * depth;
+  if (!out->values || in->symmetric) return;
+  PetscReal *row = out->values + (size_t)slot[I * w->nn + J] * size * size + dim * size;
+  for (int d = 0; d < dim; ++d) row[d] -= entry * in->gravity[d];
+}
+
 /* The corners of the point's cell, which are among its nodes. */
 typedef struct {
   PetscInt at[CELL_MAX_NODES]; /* there */
-  PetscReal x[3 * CELL_MAX_NODES];
+  PetscReal radius[CELL_MAX_NODES], depth[CELL_MAX_NODES];
 } Corners;
 
 KERNEL void find_corners(const int dim, const WeakFormInput *in, PetscInt cell, const CloudWork *w, Corners *c)
@@ -88,7 +99,8 @@ KERNEL void find_corners(const int dim, const WeakFormInput *in, PetscInt cell, 
   for (int k = 0; k < corners; ++k) {
     c->at[k] = 0;
     while (w->node[c->at[k]] != node[k]) ++c->at[k];
-    for (int d = 0; d < dim; ++d) c->x[k * dim + d] = in->x[node[k] * dim + d];
+    c->radius[k] = in->x[node[k] * dim];
+    c->depth[k] = pressure_depth(dim, in->gravity, in->x + node[k] * dim, in->du + node[k] * dim);
   }
 }
 
@@ -100,15 +112,13 @@ KERNEL void point_project(const int dim, const PetscBool hoop, const WeakFormInp
   const PetscReal volume = in->points->real[POINT_VOLUME][p], mass = in->points->real[POINT_MASS][p];
   const PetscReal scale = in->pressure_scale;
   Corners c;
-  PetscReal radius[CELL_MAX_NODES], ring[CELL_MAX_NODES * CELL_MAX_NODES];
+  PetscReal ring[CELL_MAX_NODES * CELL_MAX_NODES];
   find_corners(dim, in, in->points->cell[p], w, &c);
-  const PetscReal hold = pressure_hold(softness, mass / volume, pressure_swiftness(dim, corners, c.x, in->inertia));
-  for (int k = 0; k < corners; ++k) radius[k] = c.x[k * dim];
-  if (hoop) ring_projection(corners, radius, ring);
+  if (hoop) ring_projection(corners, c.radius, ring);
   for (int k = 0; k < corners; ++k)
     for (int l = 0; l < corners; ++l) {
-      const PetscReal share = hold * scale * (hoop ? ring[k * corners + l] : projection_entry(dim, corners, k, l));
-      if (out->volume) out->volume[w->node[c.at[k]]] -= share * mass * pressure_depth(dim, in->gravity, c.x + l * dim);
+      const PetscReal share = softness * scale * (hoop ? ring[k * corners + l] : projection_entry(dim, corners, k, l));
+      weigh_pressure(dim, in, slot, w, c.at[k], c.at[l], share * mass, c.depth[l], out);
       hold_pressure(dim, in, slot, w, c.at[k], c.at[l], share * volume * scale, out);
     }
 }

@@ -337,6 +337,8 @@ PetscErrorCode AdvisePassing(const Model *model, Diag *diag);
 void advise_late(const Model *model, Diag *diag);
 /* cells.c. Collective. The same of cells whose points do not hold a uniform stress. */
 PetscErrorCode AdviseCells(const Model *model, Diag *diag);
+/* waves.c. Collective. The same of waves that the mixed formulation slows down. */
+PetscErrorCode AdviseWaves(const Model *model, Diag *diag);
 /* units.c. Collective. Warn of numbers that are no matter's in kg, m, s and Pa. */
 PetscErrorCode AdviseUnits(const Model *model, Diag *diag);
 /* Collective. The same of a drum that is not closed: start/drum.c. */

@@ -20,34 +20,13 @@ KERNEL PetscReal projection_entry(const int dim, const int nn, int I, int J)
   return product - mean;
 }
 
-/* Share of the inertia of a cell's shortest waves that counts: all of it leaves pressures rough, 0.05 takes 4 % of the
- * period of a wave of 50 steps. */
-#define SWIFT 0.1
-
-/* SWIFT c0 h^2 / 12 of a cell with nodes x (nn x dim), h the side of a square or cube that spreads as they do. */
-KERNEL PetscReal pressure_swiftness(const int dim, const int nn, const PetscReal *x, PetscReal inertia)
-{
-  PetscReal square = 0;
-  for (int d = 0; d < dim; ++d) {
-    PetscReal mean = 0;
-    for (int I = 0; I < nn; ++I) mean += x[I * dim + d] / nn;
-    for (int I = 0; I < nn; ++I) square += PetscSqr(x[I * dim + d] - mean) / nn;
-  }
-  return SWIFT * inertia * 4.0 / dim * square / 12;
-}
-
-/* What holds pressures that vary inside a cell, 1/Pa: alpha / G where shear is what resists the motion that they cause,
- * less where its inertia does. */
-KERNEL PetscReal pressure_hold(PetscReal softness, PetscReal density, PetscReal swift)
-{
-  return softness / (1 + softness * density * swift);
-}
-
-/* Over density: by how much the pressure that bears the weight is smaller (more compressive) than at the origin. */
-KERNEL PetscReal pressure_depth(const int dim, const PetscReal *gravity, const PetscReal *x)
+/* Over density: by how much the pressure that bears the weight is smaller (more compressive) at x + du than at the
+ * origin. Its derivative makes the tangent unsymmetric and is left out of symmetric ones: beside the rest it is as the
+ * weight of a cell to its stiffness. */
+KERNEL PetscReal pressure_depth(const int dim, const PetscReal *gravity, const PetscReal *x, const PetscReal *du)
 {
   PetscReal depth = 0;
-  for (int d = 0; d < dim; ++d) depth += gravity[d] * x[d];
+  for (int d = 0; d < dim; ++d) depth += gravity[d] * (x[d] + du[d]);
   return depth;
 }
 

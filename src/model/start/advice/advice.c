@@ -204,6 +204,7 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
   PetscCall(AdviseThin(m, diag));
   PetscCall(AdviseCells(m, diag));
   PetscCall(AdvisePulses(m, diag));
+  PetscCall(AdviseWaves(m, diag));
   advise_down(m, diag);
   PetscCall(AdvisePassing(m, diag));
   advise_late(m, diag);
