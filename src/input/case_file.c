@@ -145,14 +145,15 @@ static PetscErrorCode ResolveFormulation(const YamlNode *root, const Case *whole
   PetscFunctionReturn(0);
 }
 
-/* Statics begin in equilibrium: what the initial stress lacks of it is no part of the first step. */
+/* Statics begin in equilibrium: what the initial stress lacks of it is no part of the first step. So does what has
+ * pressures of its own, whose nodes do not know them yet. */
 static void resolve_equilibrium(const YamlNode *given, Case *c)
 {
   const Method *method = c->method ? method_find(c->method) : NULL;
   if (!yaml_find(given, "reset_displacement")) c->initial.reset = case_has_stress(c);
   if (c->initial.equilibrium != EQUILIBRIUM_AUTO) return;
-  const PetscBool due =
-    case_is_static(&c->analysis) && case_has_stress(c) && !c->initial.run && method && !method->clouds;
+  const PetscBool sought = (PetscBool)(case_is_static(&c->analysis) || case_is_mixed(c));
+  const PetscBool due = sought && case_has_stress(c) && !c->initial.run && method && !method->clouds;
   c->initial.equilibrium = due ? EQUILIBRIUM_DIRECT : EQUILIBRIUM_NONE;
 }
 
@@ -255,6 +256,7 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   PetscCall(DefaultScheme(*c));
   if (diag_errors(diag) == before) check_newmark(*c, diag); /* what was not read has no numbers yet */
   resolve_equilibrium(yaml_find(document->root, "initial"), *c);
+  (*c)->bears = case_begins_at_rest(*c);
   const YamlNode *analysis = yaml_find(document->root, "analysis");
   PetscCall(ResolveRaised(analysis ? yaml_find(analysis, "limit") : NULL, diag, *c));
   resolve_release(*c, (*c)->spec);
@@ -368,6 +370,8 @@ static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag 
     tell_ages(document->root, whole->stage_case[k]);
     check_gone(whole->stage_case[k], diag);
     check_beyond(k ? whole->stage_case[k - 1] : NULL, whole->stage_case[k], diag);
+    if (k && (whole->stage_case[k - 1]->bears || case_is_static(&whole->stage_case[k - 1]->analysis)))
+      whole->stage_case[k]->bears = PETSC_TRUE;
     PetscCall(StageText(k ? whole->stage_case[k - 1] : whole, whole->stage_case[k], &whole->stages[k].text));
   }
   document->root = root;

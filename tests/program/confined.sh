@@ -53,4 +53,14 @@ lacks err.txt "waves of pressure"
 says out.txt "waves: 1291" # sqrt(M / rho)
 expect "small steps" 0 "$talus" check column.yaml --set 'analysis={type: dynamic, end: 0.01, step: 1e-3}'
 says out.txt "waves: 1291"
+# --- what falls freely bears nothing, and begins at rest only where it says so ---
+for method in fem mpm; do
+  expect "falls, $method" 0 "$talus" run column.yaml --out run --force --quiet --set method=$method --set boundary=null --set 'grid.box={min: [0, 0], max: [0.5, 1.25]}' \
+    --set 'bodies=[{name: c, shape: {box: {min: [0.125, 0.125], max: [0.375, 1.125]}}, points_per_cell: 4, material: m}]' --set 'analysis={type: dynamic, end: 0.02, step: 2e-3}' \
+    --set 'measures={low: {stress: yy, of: {tracer: [0.2, 0.2]}}, most: {energy: elastic}}'
+  awk -F, 'NR > 2 && ($3 * $3 > 1e-8 || $4 * $4 > 1e-16) { exit 1 }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
+done
+expect "k0" 0 "$talus" run column.yaml --out run --force --quiet --set 'bodies=[{name: c, shape: {box: {min: [0, 0], max: [0.25, 1]}}, material: m, k0: 1}]' --set 'analysis={type: dynamic, end: 0.02, step: 2e-3}' \
+  --set 'measures={top: {displacement: y, of: {tracer: [0.1, 0.9]}}}' --set 'output={history: {steps: 1}}'
+awk -F, 'NR > 2 && $3 * $3 > 1e-22 { exit 1 }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
 finish

@@ -6,6 +6,14 @@
 #define STIFF_WAVES 10
 #define TOO_STIFF_WAVES 60
 
+/* The weight that pressures bear (formulation/kernels/mixed_kernels.h). What dynamics let go at once bears none yet, and
+ * in free flight never does. */
+static const PetscReal *borne_gravity(const Model *m)
+{
+  static const PetscReal nothing[3] = {0, 0, 0};
+  return m->c->bears || case_is_static(&m->c->analysis) ? m->gravity : nothing;
+}
+
 WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
 {
   return (WeakFormInput){
@@ -26,7 +34,7 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
     .pressure = m->nodes->scaled_pressure,
     .pressure_scale = m->pressure_scale,
     .alpha = m->c->mixed.stabilisation,
-    .gravity = m->gravity,
+    .gravity = borne_gravity(m),
     .pressure_tie = m->space->pressure_tie,
     .cell_node = m->grid->cell_node,
   };
