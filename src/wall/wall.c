@@ -35,6 +35,15 @@ PetscErrorCode WallsDestroy(Walls **walls)
   PetscFunctionReturn(0);
 }
 
+/* Along the normal the distance does not bend: two are left, known by their sum and that of their squares. */
+PetscReal wall_bend(const WallPlace *place)
+{
+  const PetscReal *c = place->curvature, sum = c[0] + c[4] + c[8];
+  PetscReal squares = 0;
+  for (int k = 0; k < 9; ++k) squares += PetscSqr(c[k]);
+  return (sum + PetscSqrtReal(PetscMax(0, 2 * squares - PetscSqr(sum)))) / 2;
+}
+
 /* But for rounding. */
 static PetscBool is_later(PetscReal t, PetscReal than) { return t > than * (1 + 1e-9); }
 

@@ -15,6 +15,10 @@ typedef struct {
   PetscReal curvature[9]; /* 3 x 3, the Hessian of gap, 1/m: 0 along flat faces */
 } WallPlace;
 
+/* The largest of its principal curvatures, 1/m: times the gap 1 before an edge or a corner, also before one whose line
+ * bends towards x, as the rim of a hole, and less before what is round. */
+PetscReal wall_bend(const WallPlace *place);
+
 /* Mistakes of the geometry (files that cannot be read, surfaces that are not closed) go to diag. */
 PetscErrorCode WallsCreate(const Case *c, Diag *diag, Walls **walls);
 PetscErrorCode WallsDestroy(Walls **walls);

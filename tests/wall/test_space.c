@@ -199,10 +199,39 @@ static void OnTheAxis(void **state)
   wall_close(&one);
 }
 
+/* Before an edge or a corner the largest curvature is one over the distance, also before the rim of a hole, along which
+ * the level surface bends the other way; before what is round it is less. */
+static void Bends(void **state)
+{
+  static const double at[][2] = {{0.25, 0.1}, {0.1, -0.2}, {0.8, 0.05}, {0.5, 0.1}};
+  const Shape disk = {.kind = SHAPE_DISK, .centre = {-0.2, 0.1, -0.3}, .normal = {4, -2, 4}, .radii = {0.3, 0.7}};
+  const Shape box = {.kind = SHAPE_BOX, .min = {-1, -1, -1}, .max = {0, 0, 0}},
+              ball = {.kind = SHAPE_BALL, .radius = 2};
+  const double corner[3] = {0.1, 0.2, 0.3}, over[3] = {1, 2, 2};
+  OneWall one;
+  WallPlace place;
+  (void)state;
+  wall_open(&one, &kinematics_3d, (WallSpec){.shape = disk});
+  for (int k = 0; k < 4; ++k) {
+    double x[3];
+    for (int d = 0; d < 3; ++d) x[d] = base[d] + at[k][0] * across[d] + at[k][1] * axis[d];
+    assert_true(wall_near(one.walls, 0, 0, x, 9, 0, &place));
+    ASSERT_NEAR(wall_bend(&place) * place.gap, k < 3, 1e-12);
+  }
+  wall_close(&one);
+  for (int k = 0; k < 2; ++k) {
+    wall_open(&one, &kinematics_3d, (WallSpec){.shape = k ? ball : box});
+    assert_true(wall_near(one.walls, 0, 0, k ? over : corner, 9, 0, &place));
+    ASSERT_NEAR(wall_bend(&place) * place.gap, k ? 1. / 3 : 1, 1e-7); /* the root of what rounding leaves */
+    wall_close(&one);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(Box),       cmocka_unit_test(Sphere), cmocka_unit_test(Cylinder), cmocka_unit_test(Cones),
-    cmocka_unit_test(HalfSpace), cmocka_unit_test(Disks),  cmocka_unit_test(Revolved), cmocka_unit_test(OnTheAxis)};
+    cmocka_unit_test(Box),      cmocka_unit_test(Sphere),    cmocka_unit_test(Cylinder),
+    cmocka_unit_test(Cones),    cmocka_unit_test(HalfSpace), cmocka_unit_test(Disks),
+    cmocka_unit_test(Revolved), cmocka_unit_test(OnTheAxis), cmocka_unit_test(Bends)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

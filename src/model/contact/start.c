@@ -6,10 +6,9 @@
 #define TOUCHES 1e-6 /* of a cell: what is so near is in contact (contact_find.c) */
 #define FITS 1e-3    /* of the distance of a wall: so near to it ends what stands on it */
 #define PART 0.5     /* likewise, as its volume and its share of the surface tell it */
-#define SHARP \
-  0.9 /* distance of a wall over the radius of the level surface there: 1 before an edge, 2 before a corner */
-#define AMIDST 0.1 /* of a cell: what is so deep in a wall that appears would be thrown out of it */
-#define DENT 0.01  /* of a cell: a surface that is taken back by more to fit a wall may be one, too */
+#define SHARP 0.9    /* distance of a wall over the least radius of the level surface there: 1 before an edge */
+#define AMIDST 0.1   /* of a cell: what is so deep in a wall that appears would be thrown out of it */
+#define DENT 0.01    /* of a cell: a surface that is taken back by more to fit a wall may be one, too */
 
 /* The worst of something over points: how much, 0 if there is none, and where. */
 typedef struct {
@@ -51,11 +50,7 @@ static PetscBool reaches_wall(const Model *m, PetscInt p, const WallPlace *place
 }
 
 /* Is it an edge or a corner of the wall that is nearest? Around these distances are those of circles and balls. */
-static PetscBool is_sharp(const WallPlace *place)
-{
-  const PetscReal *c = place->curvature;
-  return (PetscBool)((c[0] + c[4] + c[8]) * place->gap > SHARP);
-}
+static PetscBool is_sharp(const WallPlace *place) { return (PetscBool)(wall_bend(place) * place->gap > SHARP); }
 
 /* At an edge of a body its surface is elsewhere for each wall: does the body end at this one straight before the point,
  * although that is nearer to another side? Nothing stands on a wall's own edge. */

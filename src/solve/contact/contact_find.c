@@ -232,8 +232,7 @@ static void take_lead(const NodalScene *scene, PetscInt p, PetscInt nn, const Pe
 /* Around an edge the distance bends by its inverse, and by less around all that is round, and larger than it. */
 static PetscBool is_edge(const WallPlace *place)
 {
-  const PetscReal bend = place->curvature[0] + place->curvature[4] + place->curvature[8];
-  return (PetscBool)(place->gap > 0 && bend * place->gap > 1 - EDGE);
+  return (PetscBool)(place->gap > 0 && wall_bend(place) * place->gap > 1 - EDGE);
 }
 
 /* The surface of a point, `at` in group g of the support, before one side of wall k: slot and kept are those of that
