@@ -68,11 +68,11 @@ typedef struct Case {
   PetscInt n_columns;       /* of a case with stages: measures of all of them, each name once */
   const MeasureSpec **columns;
   /* of a stage: */
-  PetscInt stage;           /* its number, 0 for the first; 0 of a case without stages */
-  const StageSpec *spec;    /* NULL: the case is no stage */
-  PetscBool seeks;          /* does any stage seek a factor of safety or a limit load? */
-  PetscBool staged;         /* has it stages, or is it one? */
-  PetscBool bears;          /* did it bear its weight at rest before: in statics, by an initial stress, in another run? */
+  PetscInt stage;        /* its number, 0 for the first; 0 of a case without stages */
+  const StageSpec *spec; /* NULL: the case is no stage */
+  PetscBool seeks;       /* does any stage seek a factor of safety or a limit load? */
+  PetscBool staged;      /* has it stages, or is it one? */
+  PetscBool bears;       /* did it bear its weight at rest before: in statics, by an initial stress, in another run? */
   const char *transfer_why; /* words that go on behind a transfer that it did not name; else NULL */
   PetscReal start;          /* when it began, s */
   PetscReal release;        /* s over which what is out of balance at the start fades; 0: at once */

@@ -255,7 +255,8 @@ static PetscErrorCode KeepDrawn(Model *m)
 static PetscBool is_heavy(const Model *m)
 {
   const PetscReal *g = m->c->gravity, pull = PetscSqrtReal(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
-  for (PetscInt i = 0; m->formulation->pressure && i < m->c->n_materials; ++i) {
+  const PetscBool bears = (PetscBool)(m->formulation && m->formulation->pressure);
+  for (PetscInt i = 0; bears && i < m->c->n_materials; ++i) {
     const Material *material = m->materials + i;
     const PetscReal weight = material->density * pull * m->grid->smallest;
     if (m->c->mixed.stabilisation * weight > LIGHT * 12 * material->elastic.shear) return PETSC_TRUE;
@@ -282,7 +283,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   raised_start(m, diag);
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
-  if (m->formulation && m->scheme && is_heavy(m)) m->symmetric = PETSC_FALSE;
+  if (is_heavy(m)) m->symmetric = PETSC_FALSE;
   PetscCall(GridWiden(&m->grid, layers_beyond(m)));
   PetscCall(KeepDrawn(m));
   PetscCall(CreateBodies(m, diag));
