@@ -287,12 +287,44 @@ static void mistakes_are_told(void **state)
 
 static void overlap_is_told(void **state)
 {
+  const Shape hole = {.kind = SHAPE_BALL, .centre = {0.6, 0.65}, .radius = 0.2};
   (void)state;
   TestCase *t = test_case(CELL_QUADRILATERAL, 12, 8, 1);
   t->c.n_bodies = 2;
   set_box(t->body, 0, 0, 1, 1);
   set_box(t->body + 1, 0.5, 0.5, 2, 1);
-  SAYS(t, 1, "bodies 'first' and 'second' overlap: 4 cells");
+  SAYS(t, 1, "bodies 'first' and 'second' overlap: 0.25 m2 would be filled twice");
+  /* whole cells that both have are told however few they are */
+  set_box(t->body + 1, 0.75, 0.75, 3, 2);
+  t->body[0].fill = t->body[1].fill = FILL_CELLS;
+  SAYS(t, 1, "overlap: 0.0625 m2");
+  t->body[0].fill = t->body[1].fill = FILL_AUTO;
+  /* no cell is filled by both: a thin layer, and a ball */
+  set_box(t->body, 0.1, 0.1, 1.03, 1.1);
+  set_box(t->body + 1, 1.02, 0.1, 2.1, 1.1);
+  SAYS(t, 1, "overlap: 0.0");
+  t->body[1].shape = hole;
+  SAYS(t, 1, "bodies 'first' and 'second' overlap: 0.12");
+  CALL(PetscFree(t));
+}
+
+/* Bodies that share a face, straight or round, have nothing in common, nor have those that are a hair apart. */
+static void neighbours_do_not_overlap(void **state)
+{
+  const Shape hole = {.kind = SHAPE_BALL, .centre = {0.6, 0.65}, .radius = 0.2};
+  Shape parts[2] = {{.kind = SHAPE_BOX}, hole};
+  (void)state;
+  TestCase *t = test_case(CELL_QUADRILATERAL, 12, 8, 1);
+  t->c.n_bodies = 2;
+  set_box(t->body, 0.1, 0.1, 1.03, 1.1);
+  set_box(t->body + 1, 1.03, 0.1, 2.1, 1.1);
+  SAYS(t, 0, "");
+  set_box(t->body + 1, 1.03 - 1e-9, 0.1, 2.1, 1.1);
+  SAYS(t, 0, "");
+  for (int d = 0; d < 2; ++d) parts[0].min[d] = 0.1, parts[0].max[d] = 1.1;
+  t->body[0].shape = (Shape){.kind = SHAPE_DIFFERENCE, .n_children = 2, .children = parts};
+  t->body[1].shape = hole;
+  SAYS(t, 0, "");
   CALL(PetscFree(t));
 }
 
@@ -578,6 +610,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(ranks_do_not_matter),
     cmocka_unit_test(mistakes_are_told),
     cmocka_unit_test(overlap_is_told),
+    cmocka_unit_test(neighbours_do_not_overlap),
     cmocka_unit_test(too_many_points_are_told),
     cmocka_unit_test(bad_volume_is_told),
     cmocka_unit_test(ids_belong_to_one_point),

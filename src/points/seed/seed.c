@@ -333,7 +333,7 @@ static PetscErrorCode AdvanceIds(const Seeding *s, PetscInt64 *next)
 }
 
 /* The cells of the body, and what they hold of it. *found is false after a mistake. */
-static PetscErrorCode ChooseSource(Seeding *s, PetscInt *taken, PetscInt64 *next)
+static PetscErrorCode ChooseSource(Seeding *s, PetscInt64 *next)
 {
   PetscFunctionBeginUser;
   if (fills_shape(s) && !s->equal) {
@@ -348,12 +348,11 @@ static PetscErrorCode ChooseSource(Seeding *s, PetscInt *taken, PetscInt64 *next
   PetscCall(ChooseCells(s, &s->ready));
   if (!s->ready) PetscFunctionReturn(0);
   PetscCall(SeedCheckVolume(s));
-  if (s->source == s->grid) PetscCall(SeedClaimCells(s, taken));
   PetscCall(AdvanceIds(s, next));
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode ChooseBody(Seeding *s, PetscInt *taken, PetscInt64 *next)
+static PetscErrorCode ChooseBody(Seeding *s, PetscInt64 *next)
 {
   Grid *own = NULL;
   PetscFunctionBeginUser;
@@ -366,7 +365,7 @@ static PetscErrorCode ChooseBody(Seeding *s, PetscInt *taken, PetscInt64 *next)
     if (!own) PetscFunctionReturn(0);
     s->source = s->own = own;
   }
-  PetscCall(ChooseSource(s, taken, next));
+  PetscCall(ChooseSource(s, next));
   PetscFunctionReturn(0);
 }
 
@@ -422,18 +421,19 @@ static Seeding seeding_of(const Points *points, const Grid *grid, const Case *c,
 PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *c, const PointSeed *per_material,
                                   PetscBool equal, Outline *outline, Diag *diag)
 {
-  PetscInt *taken;
+  PetscInt *place;
   PetscInt64 next = 0;
   PetscBool own_mesh = PETSC_FALSE;
   Seeding *all;
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(grid->n_cells, &taken));
+  PetscCall(PetscMalloc1(grid->n_cells, &place));
   PetscCall(PetscMalloc1(c->n_bodies, &all));
-  for (PetscInt k = 0; k < grid->n_cells; ++k) taken[k] = -1;
+  for (PetscInt k = 0; k < grid->n_cells; ++k) place[k] = -1;
   for (PetscInt b = 0; b < c->n_bodies; ++b) {
     all[b] = seeding_of(points, grid, c, b);
     all[b].diag = diag, all[b].equal = equal, all[b].outline = outline;
-    if (!all[b].body->absent) PetscCall(ChooseBody(&all[b], taken, &next));
+    if (!all[b].body->absent) PetscCall(ChooseBody(&all[b], &next));
+    if (all[b].ready && all[b].source == grid) PetscCall(SeedCheckOverlap(all, &all[b], place));
     if (all[b].body->mesh) own_mesh = PETSC_TRUE;
   }
   if (points->components[POINT_REACH]) PetscCall(SeedFindSides(all, c->n_bodies));
@@ -442,7 +442,7 @@ PetscErrorCode PointsSeedOutlined(Points *points, const Grid *grid, const Case *
     PetscCall(SeedingClear(&all[b]));
   }
   PetscCall(PetscFree(all));
-  PetscCall(PetscFree(taken));
+  PetscCall(PetscFree(place));
   if (own_mesh) PetscCall(LocateSeeds(points, grid, c, diag));
   PetscCall(PointsSort(points));
   PetscFunctionReturn(0);

@@ -48,6 +48,7 @@ typedef struct Seeding {
   PetscInt n_cells, *cells; /* local cells of the source that belong to the body */
   PetscInt *cut;            /* n_cells: of one that the body's surface cuts, where its parts begin; else -1 */
   PetscInt n_parts, capacity;
+  PetscReal volume;     /* of these cells, or parts, on all ranks */
   SeedPart *part;       /* n_parts */
   unsigned char *outer; /* n_cells x CELL_MOST_SIDES: is it the body's surface? A SeedSide; NULL: nobody asks */
   PetscInt n_mates;     /* shapes of bodies that this one sticks to where they touch: those that fill theirs */
@@ -150,13 +151,13 @@ void seed_face(const Seeding *s, PetscInt cell, const PetscReal *x, PetscInt q, 
 
 /* Collective. After the cells were chosen: errors for a body without a cell, warnings where whole
  * cells represent the shape badly, or have a single point that leaves them soft. */
-PetscErrorCode SeedCheckVolume(const Seeding *s);
+PetscErrorCode SeedCheckVolume(Seeding *s);
 /* Collective. Can every rank count the numbers of its points with those of this body? An error if
  * not. */
 PetscErrorCode SeedCheckRoom(const Seeding *s, const Points *points, PetscBool *fits);
-/* Collective. taken: per local cell of the grid the body that has it, -1 none; marks this body's
- * cells, and complains of overlap. */
-PetscErrorCode SeedClaimCells(const Seeding *s, PetscInt *taken);
+/* overlap.c. Collective. Complains where the body, one of `all` and made of cells of the grid, and one before it have
+ * the same place. place: -1 for each local cell of the grid, before and after. */
+PetscErrorCode SeedCheckOverlap(const Seeding *all, const Seeding *s, PetscInt *place);
 /* Collective. After points of own meshes were located: errors for bodies that reach beyond the
  * grid. */
 PetscErrorCode SeedCheckLocated(const Points *points, const Grid *grid, const Case *c, Diag *diag);

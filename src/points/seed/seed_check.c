@@ -1,5 +1,5 @@
-/* What a user should know of a seeded body: that it has points at all, that it has its volume, that
- * it overlaps no other. */
+/* What a user should know of a seeded body: that it has points at all, that it has its volume.
+ * (overlap.c: that it overlaps no other.) */
 #include "points/fields.h"
 #include "points/seed/seed.h"
 #include "base/count.h"
@@ -151,12 +151,13 @@ static PetscReal volume_in(const Seeding *s, PetscInt k)
   return share * cell_volume(type, x);
 }
 
-PetscErrorCode SeedCheckVolume(const Seeding *s)
+PetscErrorCode SeedCheckVolume(Seeding *s)
 {
   PetscReal mine[2] = {(PetscReal)s->n_cells, 0}, sum[2];
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < s->n_cells; ++k) mine[1] += volume_in(s, k);
   PetscCallMPI(MPI_Allreduce(mine, sum, 2, MPIU_REAL, MPIU_SUM, s->grid->comm));
+  s->volume = sum[1];
   if (!seed_tells(s->grid)) PetscFunctionReturn(0);
   if (sum[0] == 0) tell_empty(s);
   else if (tell_outside_shape(s)) PetscFunctionReturn(0);
@@ -164,26 +165,6 @@ PetscErrorCode SeedCheckVolume(const Seeding *s)
     compare_volume(s, sum[1]);
     tell_hourglass(s);
   }
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode SeedClaimCells(const Seeding *s, PetscInt *taken)
-{
-  PetscInt shared = 0, other = -1, all_shared, all_other;
-  char path[128];
-  PetscFunctionBeginUser;
-  for (PetscInt k = 0; k < s->n_cells; ++k) {
-    PetscInt *body = taken + s->cells[k];
-    if (s->cut && s->cut[k] >= 0) continue; /* what others leave of it, for all that is known */
-    if (*body >= 0) ++shared, other = PetscMax(other, *body);
-    *body = s->b;
-  }
-  PetscCallMPI(MPI_Allreduce(&shared, &all_shared, 1, MPIU_INT, MPI_SUM, s->grid->comm));
-  PetscCallMPI(MPI_Allreduce(&other, &all_other, 1, MPIU_INT, MPI_MAX, s->grid->comm));
-  if (!all_shared || !seed_tells(s->grid)) PetscFunctionReturn(0);
-  seed_path(s->b, "", sizeof path, path);
-  diag_error(s->diag, path, "bodies '%s' and '%s' overlap: %d cell%s would be filled twice",
-             s->c->bodies[all_other].name, s->body->name, (int)all_shared, all_shared == 1 ? "" : "s");
   PetscFunctionReturn(0);
 }
 
