@@ -1,4 +1,5 @@
 #include "boundary/loads.h"
+#include "boundary/sides/box_side.h"
 #include "boundary/sides/faces.h"
 #include "boundary/sides/load_sides.h"
 #include "boundary/surface/surface.h"
@@ -196,20 +197,6 @@ static PetscErrorCode CarryFaces(Loads *loads, const Grid *grid, PetscInt load, 
     }
   }
   PetscFunctionReturn(0);
-}
-
-/* A side of a box is a place in space. */
-static void put_on_side(const Grid *grid, Selector *on)
-{
-  for (PetscInt side = 0; grid->box && on->boundary && side < 2 * grid->dim; ++side) {
-    const PetscInt axis = side / 2;
-    const PetscReal at = side % 2 ? grid->max[axis] : grid->min[axis];
-    if (strcmp(on->boundary, box_side_name(axis, side % 2))) continue;
-    on->min[axis] = on->has[axis] ? PetscMax(at, on->min[axis]) : at;
-    on->max[axis] = on->has[axis] ? PetscMin(at, on->max[axis]) : at;
-    on->has[axis] = PETSC_TRUE;
-    on->boundary = NULL;
-  }
 }
 
 /* On the surface of a shape that cells do not follow, or of a mesh of the body's own. */

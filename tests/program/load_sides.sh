@@ -32,6 +32,23 @@ for method in fem mpm; do
   says err.txt "no boundary is named 'tpo'" "did you mean 'top'"
 done
 
+# --- whole sides of cells bear it, of which bodies that fill their shapes have a part ---
+part='bodies=[{name: b, shape: {box: {min: [0.1, 0], max: [0.7, 1]}}, material: m}]'
+for kind in 'tractions: [{on: {boundary: top}, value: [0, -1000]}]' 'pressures: [{on: {boundary: top}, value: 1000}]'; do
+  turn
+  expect "a part of sides, $kind" 0 on_ranks $ranks "$talus" run side.yaml --out run --force --set method=mpm --set "loads={$kind}" --set "$part"
+  says err.txt "the sides of cells that bear it have 0.75 m, the bodies 0.6 m of them" "on: {body: b, boundary: top}"
+  near base 3 750 1e-3
+  expect "all of them, $kind" 0 "$talus" check side.yaml --set method=mpm --set "loads={$kind}"
+  lacks err.txt "the sides of cells that bear it"
+done
+expect "up to the side" 0 "$talus" run side.yaml --out run --force --set method=mpm --set "$part"
+near base 3 600 1e-3
+lacks err.txt "the sides of cells that bear it"
+expect "below the side" 0 "$talus" check side.yaml --set method=mpm --set 'loads.tractions[0].on={boundary: top}' \
+  --set 'bodies=[{name: b, shape: {box: {min: [0, 0], max: [1, 0.9]}}, material: m}]'
+says err.txt "the sides of cells that bear it have 1 m, the bodies 0 m of them" "no body reaches that side"
+
 # --- whole cells in the place of a disk: their steps are longer than its circle ---
 expect "steps" 0 "$talus" run side.yaml --out run --force --set 'bodies=[{name: b, shape: {circle: {centre: [0.5, 0.5], radius: 0.5}}, fill: cells, material: m}]' \
   --set method=mpm --set 'grid.size=0.125' --set 'boundary=[{name: base, on: {y: 0.5}, fix: [x, y]}]' --set 'loads.tractions[0].on={body: b}'

@@ -1,4 +1,5 @@
 #include "boundary/sides/load_sides.h"
+#include "boundary/sides/box_side.h"
 #include "boundary/sides/cut_sides.h"
 #include "boundary/sides/side_keys.h"
 #include "boundary/surface/surface.h"
@@ -163,17 +164,11 @@ static PetscErrorCode TellSteps(const Grid *grid, const Case *c, const LoadSpec 
   const PetscInt body = case_body(c, load->on.body);
   const char *unit = kinematics_is_plane(c->kinematics) ? "m" : "m2";
   const PetscBool is_part = (PetscBool)(load->on.has_shape || load->on.has[0] || load->on.has[1] || load->on.has[2]);
-  PetscReal area = 0;
-  PetscInt n, *cell;
-  FacePoint *q;
+  PetscReal area;
 
   PetscFunctionBeginUser;
   if (load->kind != LOAD_TRACTION || !c->bodies[body].has_shape || load->on.boundary) PetscFunctionReturn(0);
-  PetscCall(BodySurfacePoints(grid, c, body, &load->on, PETSC_FALSE, &n, &cell, &q));
-  for (PetscInt k = 0; k < n; ++k) area += q[k].area;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPIU_SUM, grid->comm));
-  PetscCall(PetscFree(cell));
-  PetscCall(PetscFree(q));
+  PetscCall(SurfaceArea(grid, c, body, &load->on, &area));
   if (!(area > 0) || PetscAbsReal(borne - area) < (is_part ? PART : STEPS) * area) PetscFunctionReturn(0);
   diag_warning(diag, path, "the sides of cells that bear it have %.4g %s, the surface of the shape %.4g %s",
                (double)borne, unit, (double)area, unit);
@@ -209,6 +204,7 @@ PetscErrorCode LoadSidesTell(const Grid *grid, const Case *c, const Points *poin
   if (!filled) tell_empty(c, material_may_come(c, c->loads + load, fills), path, diag);
   else if (cut > LITTLE * (borne + cut)) tell_cut(c, borne, cut, fills, path, diag);
   else if (on->body) PetscCall(TellSteps(grid, c, c->loads + load, borne, path, diag));
+  else PetscCall(TellUncovered(grid, c, on, fills, borne, path, diag));
   PetscCall(PetscFree(cell));
   PetscCall(PetscFree(side));
   PetscCall(PetscFree(cut_cell));
