@@ -109,9 +109,29 @@ static PetscErrorCode AddCarrier(Loads *loads, const Grid *grid, PetscInt load, 
   PetscFunctionReturn(0);
 }
 
+#define BESIDE 1e-6 /* of a cell: a force on the surface of a shape */
+
+/* Does the force act beside all bodies, those that come later among them? PETSC_FALSE, too, where bodies do not end
+ * where shapes do: there the cell tells. */
+static PetscBool is_beside_all(const Case *c, const Grid *grid, const PetscReal *at, PetscBool fills)
+{
+  for (PetscInt b = 0; b < c->n_bodies; ++b) {
+    const BodySpec *body = c->bodies + b;
+    if (body_bearer(body, fills) != BORNE_BY_SHAPE || body->region) return PETSC_FALSE;
+    if (shape_contains(&body->shape, grid->dim, at, BESIDE * grid->smallest)) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+static void tell_beside(const char *path, Diag *diag)
+{
+  diag_error(diag, path, "no material carries the force: it acts outside of all bodies");
+  diag_hint(diag, "a place in a body, or on its surface: bodies end where their shapes do");
+}
+
 /* A point force: the lowest rank that holds the position carries it. */
-static PetscErrorCode PointLoad(Loads *loads, const Grid *grid, const Points *points, PetscInt load, const char *path,
-                                Diag *diag)
+static PetscErrorCode PointLoad(Loads *loads, const Grid *grid, const Points *points, PetscInt load, PetscBool fills,
+                                const char *path, Diag *diag)
 {
   const LoadSpec *spec = &loads->c->loads[load];
   FacePoint at = {.x = {spec->at[0], spec->at[1], spec->at[2]}};
@@ -125,6 +145,7 @@ static PetscErrorCode PointLoad(Loads *loads, const Grid *grid, const Points *po
   PetscCallMPI(MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, grid->comm));
   if (first == rank) PetscCall(AddCarrier(loads, grid, load, cell, &at, spec->value));
   if (first == size) diag_error(diag, path, "the force acts at a position outside the grid");
+  else if (is_beside_all(loads->c, grid, spec->at, fills)) tell_beside(path, diag);
   PetscFunctionReturn(0);
 }
 
@@ -284,7 +305,7 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
     const LoadKind kind = c->loads[k].kind;
     PetscCall(PetscSNPrintf(path, sizeof path, "%s.%s", case_load_path(c, k, list), kind == LOAD_POINT ? "at" : "on"));
     if (kind == LOAD_POINT) {
-      PetscCall(PointLoad(l, grid, points, k, path, diag));
+      PetscCall(PointLoad(l, grid, points, k, fills, path, diag));
       continue;
     }
     if (c->loads[k].on.body) PetscCall(BodyTraction(l, grid, points, k, fills, &faces));

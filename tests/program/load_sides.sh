@@ -49,6 +49,14 @@ expect "below the side" 0 "$talus" check side.yaml --set method=mpm --set 'loads
   --set 'bodies=[{name: b, shape: {box: {min: [0, 0], max: [1, 0.9]}}, material: m}]'
 says err.txt "the sides of cells that bear it have 1 m, the bodies 0 m of them" "no body reaches that side"
 
+# --- a point force has material at its place, not somewhere in its cell ---
+expect "a corner of the shape" 0 "$talus" run side.yaml --out run --force --set method=mpm --set "$part" --set 'loads={points: [{at: [0.7, 1], force: [0, -1000]}]}'
+near base 3 1000 1e-3
+for ranks in 1 2 3; do
+  expect "beside the shape, $ranks ranks" 2 on_ranks $ranks "$talus" run side.yaml --out run --force --set method=mpm --set "$part" --set 'loads={points: [{at: [0.72, 0.9], force: [0, -1000]}]}'
+  says err.txt "no material carries the force: it acts outside of all bodies" "bodies end where their shapes do"
+done
+
 # --- whole cells in the place of a disk: their steps are longer than its circle ---
 expect "steps" 0 "$talus" run side.yaml --out run --force --set 'bodies=[{name: b, shape: {circle: {centre: [0.5, 0.5], radius: 0.5}}, fill: cells, material: m}]' \
   --set method=mpm --set 'grid.size=0.125' --set 'boundary=[{name: base, on: {y: 0.5}, fix: [x, y]}]' --set 'loads.tractions[0].on={body: b}'
