@@ -92,6 +92,10 @@ expect "in a ring" 0 "$talus" run disk.yaml --out run --force --set kinematics=a
 near base 3 785.398 0.2 # p pi R^2
 expect "by a place" 0 "$talus" run disk.yaml --out run --force --set 'loads.tractions[0].on={body: d, boundary: left}'
 near base 3 500 1e-3
+sed 's/"arc"/"bottom"/' disk.geo >bottom.geo # also a side of the grid, where the body has 0.5 m
+turn
+expect "its own name" 0 on_ranks $ranks "$talus" run disk.yaml --out run --force --set 'bodies[0].mesh=bottom.geo' --set 'loads.tractions[0].on={body: d, boundary: bottom}'
+near base 3 785.398 1
 expect "no such group" 2 "$talus" check disk.yaml --set 'loads.tractions[0].on.boundary=ark'
 says err.txt "no boundary is named 'ark'" "did you mean 'arc'"
 

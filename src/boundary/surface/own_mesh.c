@@ -238,18 +238,47 @@ static PetscErrorCode CollectParts(const Cutting *cut, const Case *c, PetscInt b
   PetscFunctionReturn(0);
 }
 
+/* What is wrong with the mesh was told when its points were placed. */
+static PetscErrorCode CreateQuietly(const Grid *grid, const Case *c, PetscInt body, Grid **own)
+{
+  Diag *told;
+
+  PetscFunctionBeginUser;
+  *own = NULL;
+  PetscCall(DiagCreate(&told));
+  PetscCall(BodyMeshCreate(grid->comm, c, body, told, own));
+  PetscCall(DiagDestroy(&told));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BodyMeshNames(const Grid *grid, const Case *c, PetscInt body, const char *boundary, PetscBool fills,
+                             PetscBool *names)
+{
+  const BodySpec *spec = c->bodies + body;
+  Grid *own;
+  PetscInt faces = 0;
+
+  PetscFunctionBeginUser;
+  *names = PETSC_FALSE;
+  if (!spec->mesh || (fills && spec->has_shape)) PetscFunctionReturn(0);
+  PetscCall(CreateQuietly(grid, c, body, &own));
+  const GridSet *set = own ? grid_find_set(own, boundary) : NULL;
+  if (set) faces = set->n_faces;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &faces, 1, MPIU_INT, MPI_MAX, grid->comm));
+  *names = (PetscBool)(faces > 0);
+  PetscCall(GridDestroy(&own));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BodyMeshPoints(const Grid *grid, const Case *c, PetscInt body, const Selector *on, PetscBool fills,
                               PetscBool pieces, PetscInt *n, PetscInt **cell, FacePoint **point)
 {
   Cutting cut = {.kinematics = c->kinematics, .grid = grid, .on = on};
   Parts parts = {0};
-  Diag *told; /* when its points were placed */
-  Grid *own = NULL;
+  Grid *own;
 
   PetscFunctionBeginUser;
-  PetscCall(DiagCreate(&told));
-  PetscCall(BodyMeshCreate(grid->comm, c, body, told, &own));
-  PetscCall(DiagDestroy(&told));
+  PetscCall(CreateQuietly(grid, c, body, &own));
   cut.own = own;
   if (own) PetscCall(CollectParts(&cut, c, body, fills, pieces, &parts));
   PetscCall(GridDestroy(&own));

@@ -69,6 +69,10 @@ PetscErrorCode BodySurfacePoints(const Grid *grid, const Case *c, PetscInt body,
  * physical group; fills: as in LoadsCreate. */
 PetscErrorCode BodyMeshPoints(const Grid *grid, const Case *c, PetscInt body, const Selector *on, PetscBool fills,
                               PetscBool pieces, PetscInt *n, PetscInt **cell, FacePoint **point);
+/* Collective. Has the body a mesh of its own whose sides have a boundary of this name? It means these, whatever the grid
+ * calls so. Not where the body is a shape in that mesh, of which no boundary is a part. */
+PetscErrorCode BodyMeshNames(const Grid *grid, const Case *c, PetscInt body, const char *boundary, PetscBool fills,
+                             PetscBool *names);
 /* How a body's surface is found where a load acts on it. */
 typedef enum { BORNE_BY_CELLS, BORNE_BY_SHAPE, BORNE_BY_MESH } Bearer;
 Bearer body_bearer(const BodySpec *body, PetscBool fills);
