@@ -1,6 +1,8 @@
 /* Points that leave the grid: how many, how much mass, energy and momentum went with them. */
 #include "model/model_private.h"
 
+#define SHORT 0.1 /* of a cell: a body that ends farther from the edge of the grid does not fill it so far */
+
 /* The place of the first of them by id, on all ranks. */
 static PetscErrorCode FindFirst(const Model *m, LostPoint *first)
 {
@@ -139,6 +141,17 @@ static PetscErrorCode CountFree(const Model *m, PetscInt *count)
   PetscFunctionReturn(0);
 }
 
+/* Does a body that fills its shape, and has not moved, end before this edge of a box, though in the last cell? */
+static PetscBool ends_before(const Model *m, PetscInt b, PetscInt axis, PetscBool high)
+{
+  const BodySpec *body = m->c->bodies + b;
+  PetscReal min[3], max[3];
+  if (!m->grid->box || case_goes_on(m->c) || body->mesh || !body_fills_shape(body, PETSC_TRUE)) return PETSC_FALSE;
+  shape_bounds(&body->shape, m->dim, min, max);
+  return (PetscBool)((high ? m->grid->max[axis] - max[axis] : min[axis] - m->grid->min[axis]) >
+                     SHORT * m->grid->smallest);
+}
+
 PetscErrorCode OutsideWarn(const Model *m, Diag *diag)
 {
   static const char *const name[] = {"-x", "x", "-y", "y", "-z", "z"};
@@ -154,7 +167,8 @@ PetscErrorCode OutsideWarn(const Model *m, Diag *diag)
   for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
     int end = 0;
     for (int k = 0; k < 6; ++k)
-      if (count[6 * b + k]) end += snprintf(list + end, sizeof list - (size_t)end, "%s%s", end ? ", " : "", name[k]);
+      if (count[6 * b + k] && !ends_before(m, b, k / 2, (PetscBool)(k % 2)))
+        end += snprintf(list + end, sizeof list - (size_t)end, "%s%s", end ? ", " : "", name[k]);
     if (!end) continue;
     snprintf(path, sizeof path, "bodies[%d]", (int)b);
     diag_warning(diag, path, "'%s' fills the grid to its edge towards %s, where nothing holds it: %s",

@@ -28,6 +28,8 @@ expect "check" 0 "$talus" check bar.yaml
 says err.txt "bar.yaml:6:5: warning: 'bar' fills the grid to its edge towards x, y, where nothing holds it" "let the grid reach"
 expect "check of a larger grid" 0 "$talus" check bar.yaml --set 'grid.box.max=[5, 2]'
 [ ! -s err.txt ] || fail "$name: a warning"
+expect "check of a body that ends within the last cell" 0 "$talus" check bar.yaml --set 'grid.box.max=[5, 2]' --set 'bodies[0].shape.box.max=[4.8, 1]' --set 'loads={}'
+lacks err.txt "fills the grid"
 expect "larger grid" 0 "$talus" run bar.yaml --out large --quiet --set 'grid.box.max=[5, 2]'
 for ranks in 1 2 3; do
   expect "its own grid, $ranks ranks" 0 on_ranks $ranks "$talus" run bar.yaml --out own$ranks --quiet
