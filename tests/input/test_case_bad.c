@@ -377,7 +377,7 @@ static const Bad bads[] = {
    {"times must grow from pair to pair"}},
   {"amplitude stands still",
    PLAIN "loads: {gravity: [0, -1], gravity_amplitude: [[0, 0], [1, 1], [1, 2]]}\n",
-   {"times must grow from pair to pair"}},
+   {"times must grow from pair to pair", "a jump is two times close together, less than a step apart"}},
   {"an empty amplitude",
    PLAIN "loads: {gravity: [0, -1], gravity_amplitude: []}\n",
    {"must be a list of pairs [[time, factor], ...], not an empty list"}},

@@ -189,6 +189,13 @@ static PetscBool read_factor(SchemaReader *r, const YamlNode *node, PetscReal *v
   return PETSC_FALSE;
 }
 
+static void tell_order(SchemaReader *r, const YamlNode *pair, PetscBool jumps)
+{
+  char path[512];
+  SchemaError(r, pair, "%s: times must grow from pair to pair", yaml_path(pair, path, sizeof(path)));
+  if (jumps) diag_hint(r->diag, "a jump is two times close together, less than a step apart");
+}
+
 PetscErrorCode SchemaReadAmplitude(SchemaReader *r, const SchemaEntry *e, const YamlNode *node, void *target)
 {
   Amplitude *a = (Amplitude *)((char *)target + e->offset);
@@ -206,7 +213,7 @@ PetscErrorCode SchemaReadAmplitude(SchemaReader *r, const SchemaEntry *e, const 
       SchemaError(r, pair, "%s must be a pair [time in s, factor]", yaml_path(pair, path, sizeof(path)));
     else if (schema_number(r, &time, pair->child[0], &a->time[i]) && read_factor(r, pair->child[1], &a->value[i]) &&
              i > 0 && a->time[i] <= a->time[i - 1])
-      SchemaError(r, pair, "%s: times must grow from pair to pair", yaml_path(pair, path, sizeof(path)));
+      tell_order(r, pair, a->time[i] == a->time[i - 1]);
   }
   PetscFunctionReturn(0);
 }
