@@ -109,7 +109,7 @@ static PetscErrorCode AddCarrier(Loads *loads, const Grid *grid, PetscInt load, 
   PetscFunctionReturn(0);
 }
 
-#define BESIDE 1e-6 /* of a cell: a force on the surface of a shape */
+#define BESIDE 0.02 /* of a cell: a force on the surface of a shape, by the digits that a user writes */
 
 /* Does the force act beside all bodies, those that come later among them? PETSC_FALSE, too, where bodies do not end
  * where shapes do: there the cell tells. */
