@@ -213,6 +213,7 @@ static PetscErrorCode CarryFaces(Loads *loads, const Grid *grid, PetscInt load, 
     const PetscInt nq = loads_have_pieces(loads) ? face_pieces(loads->c->kinematics, grid, cell[f], side[f], q)
                                                  : face_quadrature(loads->c->kinematics, grid, cell[f], side[f], q);
     for (PetscInt k = 0; k < nq; ++k) {
+      if (!(q[k].area > 0)) continue; /* on the axis of rings */
       force_on(&loads->c->loads[load], &q[k], force);
       PetscCall(AddCarrier(loads, grid, load, cell[f], &q[k], force));
     }

@@ -304,13 +304,6 @@ PetscBool case_has_stress(const Case *c)
   return PETSC_FALSE;
 }
 
-PetscBool case_begins_at_rest(const Case *c)
-{
-  const EquilibriumKind kind = c->initial.equilibrium;
-  return (PetscBool)(c->initial.run || case_has_stress(c) || kind == EQUILIBRIUM_DIRECT ||
-                     kind == EQUILIBRIUM_ELASTIC_FIRST);
-}
-
 PetscBool case_equilibrates(const Case *c)
 {
   return (PetscBool)(c->initial.equilibrium > EQUILIBRIUM_NONE && c->stage == 0);

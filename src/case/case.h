@@ -68,11 +68,10 @@ typedef struct Case {
   PetscInt n_columns;       /* of a case with stages: measures of all of them, each name once */
   const MeasureSpec **columns;
   /* of a stage: */
-  PetscInt stage;        /* its number, 0 for the first; 0 of a case without stages */
-  const StageSpec *spec; /* NULL: the case is no stage */
-  PetscBool seeks;       /* does any stage seek a factor of safety or a limit load? */
-  PetscBool staged;      /* has it stages, or is it one? */
-  PetscBool bears;       /* did it bear its weight at rest before: in statics, by an initial stress, in another run? */
+  PetscInt stage;           /* its number, 0 for the first; 0 of a case without stages */
+  const StageSpec *spec;    /* NULL: the case is no stage */
+  PetscBool seeks;          /* does any stage seek a factor of safety or a limit load? */
+  PetscBool staged;         /* has it stages, or is it one? */
   const char *transfer_why; /* words that go on behind a transfer that it did not name; else NULL */
   PetscReal start;          /* when it began, s */
   PetscReal release;        /* s over which what is out of balance at the start fades; 0: at once */
@@ -108,8 +107,6 @@ PetscBool case_has_contact(const Case *c, ContactKind kind);
 PetscBool case_dilates(const Case *c); /* has any material a dilatancy angle? */
 /* Equilibrium at every step, no inertia: a factor of safety is found so, too. Else there is inertia. */
 PetscBool case_is_static(const AnalysisSpec *analysis);
-/* Does it begin with forces in balance, by what it says itself? */
-PetscBool case_begins_at_rest(const Case *c);
 /* Explicit dynamics: share of the critical step that is taken. musl bears all of it, usl two thirds (docs/theory.md,
  * "Explicit dynamics"). Springs of contact that are stiffer than cells want a smaller one. */
 PetscReal case_courant(const AnalysisSpec *analysis);

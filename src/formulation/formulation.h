@@ -35,7 +35,8 @@ typedef struct {
   /* mixed: Pa/m, gives both unknowns the same unit, and both equations N */
   PetscReal pressure_scale;
   PetscReal alpha;          /* mixed: stabilisation of the pressure is alpha / G */
-  const PetscReal *gravity; /* mixed: m/s2, three numbers */
+  const PetscReal *gravity; /* mixed: m/s2, three numbers, */
+  const PetscBool *weighs;  /* and of which bodies pressures bear the weight */
   /* mixed: per group, ties the pressures of a hardly filled cell, m3/Pa, or NULL */
   const PetscReal *pressure_tie;
   const PetscInt *cell_node; /* mixed, points with nodes of their own: the corners of each cell of their grid */

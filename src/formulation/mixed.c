@@ -111,7 +111,7 @@ KERNEL void add_point(const int dim, const int nn, const PetscBool hoop, const W
   row_add(nn, scaled * (b->s.theta[k] - b->p[k] * material->compliance), N, w->fp);
   const PetscReal softness = in->alpha / material->elastic.shear;
   w->hold += softness * volume;
-  w->weight += softness * mass;
+  if (in->weighs[points->body[p]]) w->weight += softness * mass;
   if (!tangent) return;
   add_stiffness(dim, nn, hoop, PETSC_FALSE, &run, w->u.K);
   add_pressure_force(dim, nn, hoop, run.g[0], b->s.coupling + 6 * k, N, scaled, w->Kup);

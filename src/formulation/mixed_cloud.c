@@ -109,7 +109,8 @@ KERNEL void point_project(const int dim, const PetscBool hoop, const WeakFormInp
                           const PetscInt *slot, const CloudWork *w, WeakFormOutput *out)
 {
   const int corners = 1 << dim;
-  const PetscReal volume = in->points->real[POINT_VOLUME][p], mass = in->points->real[POINT_MASS][p];
+  const PetscReal volume = in->points->real[POINT_VOLUME][p];
+  const PetscReal mass = in->weighs[in->points->body[p]] ? in->points->real[POINT_MASS][p] : 0;
   const PetscReal scale = in->pressure_scale;
   Corners c;
   PetscReal ring[CELL_MAX_NODES * CELL_MAX_NODES];

@@ -233,6 +233,25 @@ static void check_newmark(const Case *c, Diag *diag)
 }
 
 /* whole: NULL, or the case of which it is stage k. */
+/* Bodies that begin in balance with their weight. */
+static void find_bearing(Case *c)
+{
+  const EquilibriumKind kind = c->initial.equilibrium;
+  const PetscBool all = c->initial.run || kind == EQUILIBRIUM_DIRECT || kind == EQUILIBRIUM_ELASTIC_FIRST;
+  for (PetscInt b = 0; b < c->n_bodies; ++b) c->bodies[b].bears = (PetscBool)(all || body_has_stress(c->bodies + b));
+}
+
+/* Those that have come into it in the stages before. */
+static void bear_on(const Case *before, Case *c)
+{
+  const PetscBool rests = case_is_static(&before->analysis);
+  for (PetscInt b = 0; b < c->n_bodies; ++b)
+    for (PetscInt k = 0; k < before->n_bodies; ++k) {
+      const BodySpec *was = before->bodies + k;
+      if (!strcmp(was->name, c->bodies[b].name)) c->bodies[b].bears |= was->bears || (rests && !was->absent);
+    }
+}
+
 static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Diag *diag, const Case *whole, PetscInt k,
                                    Case **c)
 {
@@ -256,7 +275,7 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   PetscCall(DefaultScheme(*c));
   if (diag_errors(diag) == before) check_newmark(*c, diag); /* what was not read has no numbers yet */
   resolve_equilibrium(yaml_find(document->root, "initial"), *c);
-  (*c)->bears = case_begins_at_rest(*c);
+  find_bearing(*c);
   const YamlNode *analysis = yaml_find(document->root, "analysis");
   PetscCall(ResolveRaised(analysis ? yaml_find(analysis, "limit") : NULL, diag, *c));
   resolve_release(*c, (*c)->spec);
@@ -370,8 +389,7 @@ static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag 
     tell_ages(document->root, whole->stage_case[k]);
     check_gone(whole->stage_case[k], diag);
     check_beyond(k ? whole->stage_case[k - 1] : NULL, whole->stage_case[k], diag);
-    if (k && (whole->stage_case[k - 1]->bears || case_is_static(&whole->stage_case[k - 1]->analysis)))
-      whole->stage_case[k]->bears = PETSC_TRUE;
+    if (k) bear_on(whole->stage_case[k - 1], whole->stage_case[k]);
     PetscCall(StageText(k ? whole->stage_case[k - 1] : whole, whole->stage_case[k], &whole->stages[k].text));
   }
   document->root = root;

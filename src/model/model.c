@@ -264,6 +264,15 @@ static PetscBool is_heavy(const Model *m)
   return PETSC_FALSE;
 }
 
+static PetscErrorCode FindWeighing(Model *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m->c->n_bodies, &m->weighs));
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b)
+    m->weighs[b] = (PetscBool)(m->c->bodies[b].bears || case_is_static(&m->c->analysis));
+  PetscFunctionReturn(0);
+}
+
 /* Everything after the parts that stand alone; each may find mistakes that make the next
  * meaningless. */
 static PetscErrorCode Build(Model *m, Diag *diag)
@@ -284,6 +293,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(GridCreate(m->comm, m->c, cell_weight, (void *)m->c, diag, &m->grid));
   if (!m->grid) PetscFunctionReturn(0);
   if (is_heavy(m)) m->symmetric = PETSC_FALSE;
+  PetscCall(FindWeighing(m));
   PetscCall(GridWiden(&m->grid, layers_beyond(m)));
   PetscCall(KeepDrawn(m));
   PetscCall(CreateBodies(m, diag));
@@ -359,6 +369,7 @@ PetscErrorCode ModelDestroy(Model **model)
   if (m->grid) PetscCall(GridDestroy(&m->grid));
   PetscCall(PetscFree(m->drawn));
   PetscCall(PetscFree(m->balanced));
+  PetscCall(PetscFree(m->weighs));
   PetscCall(PetscFree(m->let_go));
   PetscCall(PetscFree(m->raised.nodal));
   PetscCall(PetscFree2(m->unheld.dof, m->unheld.turns));

@@ -176,7 +176,9 @@ typedef struct Model {
   PetscBool symmetric;      /* are all tangents symmetric? */
   PetscReal machine_memory; /* bytes: MemoryHeld */
   PetscReal gravity[3];     /* of the step, m/s2 */
-  PetscReal courant_speed;  /* largest sqrt(M / density), m/s */
+  /* n_bodies: mixed: do pressures bear its weight? What dynamics let go at once bears none, in free flight never */
+  PetscBool *weighs;
+  PetscReal courant_speed; /* largest sqrt(M / density), m/s */
   /* see Energies */
   PetscReal external_work, boundary_work, damped_energy, transfer_energy, friction_energy, numerical_energy;
   PetscReal held_energy;

@@ -134,4 +134,18 @@ for up in 0 1; do
     near base 3 1000 0.1
   done
 done
+
+# --- a side of the box that the body does not reach; a surface that goes along the axis of rings ---
+expect "not there" 2 "$talus" check side.yaml --set method=mpm --set 'grid.box.max=[1, 1.5]'
+says err.txt "selects no face of the body's boundary" "'top' is the side of the grid at y = 1.5 m" "on: {body: b, y: ...}"
+for method in fem mpm gmm; do
+  turn
+  expect "all round a cylinder, $method" 0 on_ranks $ranks "$talus" run side.yaml --out run --force --set method=$method --set kinematics=axisymmetric --set 'boundary=[{name: base, on: {boundary: bottom}, fix: [y]}]' \
+    --set 'grid.box.max=[1.25, 1]' --set 'loads={pressures: [{on: {body: b, x: 1}, value: 1000}, {on: {body: b, y: 1}, value: 1000}]}' --set 'measures={base: {reaction: y, of: {boundary: base}}, xx: {stress: xx}}'
+  near base 3 3141.593 4
+  near xx 4 -1000 4
+done
+expect "with its axis" 0 "$talus" run side.yaml --out run --force --set kinematics=axisymmetric --set 'boundary=[{name: base, on: {boundary: bottom}, fix: [y]}]' \
+  --set 'loads={pressures: [{on: {body: b}, value: 1000}]}' --set 'measures={base: {reaction: y, of: {boundary: base}}, xx: {stress: xx}}'
+near xx 4 -1000 1
 finish

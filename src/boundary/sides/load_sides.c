@@ -119,6 +119,18 @@ static PetscErrorCode CheckName(const Grid *grid, const Case *c, const Selector 
   PetscFunctionReturn(0);
 }
 
+/* A side of the box where the body does not end. */
+static void tell_side(const Grid *grid, const Selector *on, Diag *diag)
+{
+  for (PetscInt side = 0; side < 2 * grid->dim; ++side) {
+    const PetscInt axis = side / 2;
+    if (strcmp(on->boundary, box_side_name(axis, side % 2))) continue;
+    diag_hint(diag, "'%s' is the side of the grid at %c = %g m: a side of '%s' elsewhere is `on: {body: %s, %c: ...}`",
+              on->boundary, "xyz"[axis], (double)(side % 2 ? grid->max[axis] : grid->min[axis]), on -> body, on -> body,
+              "xyz"[axis]);
+  }
+}
+
 static PetscErrorCode TellNoFace(const Grid *grid, const Case *c, PetscInt load, PetscBool fills, const char *path,
                                  Diag *diag)
 {
@@ -133,6 +145,7 @@ static PetscErrorCode TellNoFace(const Grid *grid, const Case *c, PetscInt load,
   PetscCall(MPIU_Allreduce(&n, &any, 1, MPIU_INT, MPI_SUM, grid->comm));
   if (!on->body && any) tell_empty(c, PETSC_FALSE, path, diag);
   else diag_error(diag, path, "selects no face%s", on->body ? " of the body's boundary" : " of the grid's boundary");
+  if (on->body && on->boundary && grid->box) tell_side(grid, on, diag);
   PetscCall(PetscFree(cell));
   PetscCall(PetscFree(side));
   PetscFunctionReturn(0);

@@ -6,14 +6,6 @@
 #define STIFF_WAVES 10
 #define TOO_STIFF_WAVES 60
 
-/* The weight that pressures bear (formulation/kernels/mixed_kernels.h). What dynamics let go at once bears none yet, and
- * in free flight never does. */
-static const PetscReal *borne_gravity(const Model *m)
-{
-  static const PetscReal nothing[3] = {0, 0, 0};
-  return m->c->bears || case_is_static(&m->c->analysis) ? m->gravity : nothing;
-}
-
 WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
 {
   return (WeakFormInput){
@@ -34,7 +26,8 @@ WeakFormInput weak_form_of(const Model *m, PetscReal inertia)
     .pressure = m->nodes->scaled_pressure,
     .pressure_scale = m->pressure_scale,
     .alpha = m->c->mixed.stabilisation,
-    .gravity = borne_gravity(m),
+    .gravity = m->gravity,
+    .weighs = m->weighs,
     .pressure_tie = m->space->pressure_tie,
     .cell_node = m->grid->cell_node,
   };

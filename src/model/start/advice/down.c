@@ -22,7 +22,8 @@ static void advise_floor(const Model *m, Diag *diag)
   for (PetscInt d = 1; d < 3; ++d)
     if (PetscAbsReal(g[d]) > PetscAbsReal(g[axis])) axis = d;
   const int high = g[axis] > 0;
-  if (m->dim < 3 || !grid_is_aligned(m->grid) || g[axis] == 0 || PetscAbsReal(g[1]) > 1e-6 * PetscAbsReal(g[axis]))
+  if (m->dim < 3 || m->c->n_walls || !grid_is_aligned(m->grid) || g[axis] == 0 ||
+      PetscAbsReal(g[1]) > 1e-6 * PetscAbsReal(g[axis]))
     return;
   for (PetscInt k = 0; k < c->n_boundary; ++k)
     if (holds_side(m->grid, &c->boundary[k], axis, high)) return;
