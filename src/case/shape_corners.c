@@ -20,7 +20,7 @@ static void add_plane(const PetscReal *normal, PetscReal offset, Planes *p)
   p->offset[p->n++] = offset / norm;
 }
 
-/* Sides of the box, and the half-spaces among the shape's children. In the plane the third axis has the ends 0 and 0. */
+/* Sides of the box, and the half-spaces among the shape's children. In the plane the third axis ends at 0 twice. */
 static void collect_planes(const Shape *s, const PetscReal min[3], const PetscReal max[3], Planes *p)
 {
   for (int side = 0; side < 6; ++side) {

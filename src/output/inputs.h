@@ -1,7 +1,7 @@
 /* The files that a case reads besides itself, and what they were when a run read them: files.txt in its directory, a
  * line for each,
  *
- *   grid.mesh = 1a2b3c4d 12345 /home/me/block.msh
+ *   grid.mesh = 1a2b3c4d 12345 /cases/block.msh
  *
  * with the place in the case, CRC-32, bytes, and the path: meshes (with what a .geo includes), terrains, surfaces,
  * laws of shared libraries, and the run that another one starts from. */

@@ -189,19 +189,29 @@ static PetscErrorCode PointsSpan(const char *run, PetscReal time, PetscInt along
   PetscFunctionReturn(0);
 }
 
+/* The case of the run; NULL where it cannot be read, which is not said. */
+static PetscErrorCode ReadCase(const PlotOptions *options, Diag *unheard, Case **c)
+{
+  char path[FILE_PATH];
+
+  PetscFunctionBeginUser;
+  *c = NULL;
+  PetscCall(PetscSNPrintf(path, sizeof path, "%s/case.yaml", options->run));
+  PetscCall(CaseRead(PETSC_COMM_SELF, path, 0, NULL, unheard, c));
+  PetscFunctionReturn(0);
+}
+
 /* Where a wall stands beside a body and feels nothing, a curve has nothing: the axis shows it. */
 static PetscErrorCode FindSpan(const PlotOptions *options, PetscInt wall, PetscReal time, Profile *p)
 {
   PetscReal points[2] = {PETSC_MAX_REAL, -PETSC_MAX_REAL}, min[3], max[3];
-  char path[FILE_PATH];
   Walls *walls = NULL;
   Case *c = NULL;
   Diag *own;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, sizeof path, "%s/case.yaml", options->run));
   PetscCall(DiagCreate(&own));
-  PetscCall(CaseRead(PETSC_COMM_SELF, path, 0, NULL, own, &c));
+  PetscCall(ReadCase(options, own, &c));
   if (c) PetscCall(WallsCreate(c, own, &walls));
   if (walls) {
     PetscCall(PointsSpan(options->run, time, p->along, points));
@@ -218,16 +228,14 @@ static PetscErrorCode FindSpan(const PlotOptions *options, PetscInt wall, PetscR
 /* The index of a wall of the run's case by its name; -1 and a complaint if it has none. */
 static PetscErrorCode FindWall(const PlotOptions *options, Diag *diag, PetscInt *index, PetscBool *space)
 {
-  char path[FILE_PATH];
   const char **names, *nearest;
   Case *c = NULL;
   Diag *own;
 
   PetscFunctionBeginUser;
   *index = -1;
-  PetscCall(PetscSNPrintf(path, sizeof path, "%s/case.yaml", options->run));
   PetscCall(DiagCreate(&own));
-  PetscCall(CaseRead(PETSC_COMM_SELF, path, 0, NULL, own, &c));
+  PetscCall(ReadCase(options, own, &c));
   PetscCall(DiagDestroy(&own));
   PetscCall(PetscCalloc1(c ? c->n_walls + 1 : 1, &names));
   for (PetscInt k = 0; c && k < c->n_walls; ++k) {
