@@ -231,14 +231,12 @@ static PetscErrorCode CarrySurface(Loads *loads, const Grid *grid, PetscInt load
   FacePoint *q = NULL;
   PetscInt *cell = NULL;
   PetscReal force[3];
-  PetscBool its_own = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   *n = 0;
-  if (on.boundary) PetscCall(BodyMeshNames(grid, loads->c, body, on.boundary, fills, &its_own));
-  if (!its_own) put_on_side(grid, &on);
+  put_on_side(grid, &on);
   if (body_bearer(loads->c->bodies + body, fills) == BORNE_BY_MESH)
-    PetscCall(BodyMeshPoints(grid, loads->c, body, &on, fills, pieces, n, &cell, &q));
+    PetscCall(BodyMeshPoints(grid, loads->c, body, &spec->on, fills, pieces, n, &cell, &q));
   else if (!on.boundary) PetscCall(BodySurfacePoints(grid, loads->c, body, &on, pieces, n, &cell, &q));
   for (PetscInt k = 0; k < *n; ++k) {
     force_on(spec, &q[k], force);

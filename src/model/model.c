@@ -250,8 +250,8 @@ static PetscErrorCode KeepDrawn(Model *m)
 
 #define LIGHT 1e-3 /* Newton's method gains as many digits an iteration without it */
 
-/* Does weight strain a cell so much that Newton's method misses what symmetric tangents leave out: how the pressure that
- * bears it goes with the nodes (formulation/kernels/mixed_kernels.h)? */
+/* Does weight strain a cell so much that Newton's method misses what symmetric tangents leave out: how the pressure
+ * that bears it goes with the nodes (formulation/kernels/mixed_kernels.h)? */
 static PetscBool is_heavy(const Model *m)
 {
   const PetscReal *g = m->c->gravity, pull = PetscSqrtReal(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);

@@ -4,6 +4,7 @@
  * While the search runs, cell = -2 - old stands for "not found here, was in old": no list is needed
  * until some point leaves, and a step in which none does costs one small reduction. */
 #include <stdlib.h>
+#include "base/gather.h"
 #include "points/migrate.h"
 #include "points/fields.h"
 
@@ -95,25 +96,18 @@ static PetscErrorCode ListLost(const Leavers *l, const Points *points, PetscInt 
 static PetscErrorCode GatherLost(const Grid *grid, PetscInt n_mine, const LostPoint *mine, PetscInt *n_lost,
                                  LostPoint **lost)
 {
-  PetscMPIInt size, *count, *start, sent = (PetscMPIInt)(PetscMin(n_mine, LOST_KEPT) * (PetscInt)sizeof *mine);
+  PetscInt n_all;
   LostPoint *all;
   PetscFunctionBeginUser;
   *lost = NULL;
   PetscCallMPI(MPI_Allreduce(&n_mine, n_lost, 1, MPIU_INT, MPI_SUM, grid->comm));
   if (!*n_lost) PetscFunctionReturn(0);
-  PetscCallMPI(MPI_Comm_size(grid->comm, &size));
-  PetscCall(PetscMalloc2(size, &count, size + 1, &start));
-  PetscCallMPI(MPI_Allgather(&sent, 1, MPI_INT, count, 1, MPI_INT, grid->comm));
-  start[0] = 0;
-  for (PetscMPIInt r = 0; r < size; ++r) start[r + 1] = start[r] + count[r];
-  const PetscInt n_all = start[size] / (PetscInt)sizeof *all, kept = PetscMin(n_all, LOST_KEPT);
-  PetscCall(PetscMalloc1(n_all, &all));
-  PetscCallMPI(MPI_Allgatherv(mine, sent, MPI_BYTE, all, count, start, MPI_BYTE, grid->comm));
+  PetscCall(GatherAll(grid->comm, sizeof *all, PetscMin(n_mine, LOST_KEPT), mine, &n_all, &all));
+  const PetscInt kept = PetscMin(n_all, LOST_KEPT);
   qsort(all, (size_t)n_all, sizeof *all, compare_lost);
   PetscCall(PetscMalloc1(kept, lost));
   PetscCall(PetscArraycpy(*lost, all, kept));
   PetscCall(PetscFree(all));
-  PetscCall(PetscFree2(count, start));
   PetscFunctionReturn(0);
 }
 

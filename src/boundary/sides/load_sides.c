@@ -87,13 +87,10 @@ static PetscBool material_may_come(const Case *c, const LoadSpec *load, PetscBoo
 static PetscErrorCode CheckOwnMesh(const Grid *grid, const Case *c, const Selector *on, const char *path, Diag *diag,
                                    PetscBool *good)
 {
-  Grid *own = NULL;
-  Diag *again; /* what is wrong with the mesh has been said */
+  Grid *own;
 
   PetscFunctionBeginUser;
-  PetscCall(DiagCreate(&again));
-  PetscCall(BodyMeshCreate(grid->comm, c, case_body(c, on->body), again, &own));
-  PetscCall(DiagDestroy(&again));
+  PetscCall(BodyMeshAgain(grid, c, case_body(c, on->body), &own));
   if (own && !grid_find_set(grid, on->boundary)) PetscCall(GridCheckBoundary(own, on->boundary, path, diag, good));
   PetscCall(GridDestroy(&own));
   PetscFunctionReturn(0);

@@ -1,5 +1,6 @@
 #include "boundary/sides/side_keys.h"
 #include <stdlib.h>
+#include "base/gather.h"
 #include "points/seed/outline.h"
 
 void side_key(const Grid *grid, PetscInt cell, PetscInt side, PetscInt key[SIDE_KEY])
@@ -20,20 +21,9 @@ static int compare(const void *a, const void *b)
 
 PetscErrorCode SideKeysGather(MPI_Comm comm, PetscInt n, const PetscInt *keys, PetscInt *n_all, PetscInt **all)
 {
-  PetscMPIInt size, mine, *count, *start;
-
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMPIIntCast(SIDE_KEY * n, &mine));
-  PetscCall(PetscMalloc2(size, &count, size + 1, &start));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, comm));
-  start[0] = 0;
-  for (PetscMPIInt r = 0; r < size; ++r) start[r + 1] = start[r] + count[r];
-  *n_all = start[size] / SIDE_KEY;
-  PetscCall(PetscMalloc1(SIDE_KEY * *n_all, all));
-  PetscCallMPI(MPI_Allgatherv(keys, mine, MPIU_INT, *all, count, start, MPIU_INT, comm));
+  PetscCall(GatherAll(comm, SIDE_KEY * sizeof(PetscInt), n, keys, n_all, all));
   if (*n_all) qsort(*all, (size_t)*n_all, SIDE_KEY * sizeof(PetscInt), compare);
-  PetscCall(PetscFree2(count, start));
   PetscFunctionReturn(0);
 }
 

@@ -1,5 +1,7 @@
 /* The surface of a body that brings a mesh of its own: sides of that mesh, in parts that are small beside a cell of the
  * grid. */
+#include "base/gather.h"
+#include "boundary/sides/box_side.h"
 #include "boundary/sides/side_keys.h"
 #include "boundary/surface/surface.h"
 #include "points/seed/outline.h"
@@ -161,32 +163,6 @@ static PetscErrorCode CutSide(const Cutting *c, PetscInt cell, PetscInt side, Pa
   PetscFunctionReturn(0);
 }
 
-/* The parts of all ranks, on all of them. */
-static PetscErrorCode GatherParts(MPI_Comm comm, Parts *parts)
-{
-  PetscMPIInt size, mine, *count, *start;
-  Parts all = {0};
-  MPI_Datatype type;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMPIIntCast(parts->n, &mine));
-  PetscCall(PetscMalloc2(size, &count, size + 1, &start));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, comm));
-  start[0] = 0;
-  for (PetscMPIInt r = 0; r < size; ++r) start[r + 1] = start[r] + count[r];
-  all.n = all.capacity = start[size];
-  PetscCall(PetscMalloc1(all.n, &all.point));
-  PetscCallMPI(MPI_Type_contiguous((int)sizeof(FacePoint), MPI_BYTE, &type));
-  PetscCallMPI(MPI_Type_commit(&type));
-  PetscCallMPI(MPI_Allgatherv(parts->point, mine, type, all.point, count, start, type, comm));
-  PetscCallMPI(MPI_Type_free(&type));
-  PetscCall(PetscFree2(count, start));
-  PetscCall(PetscFree(parts->point));
-  *parts = all;
-  PetscFunctionReturn(0);
-}
-
 /* Each part has the cell in which it is, on the first rank that has this cell; what lies outside of the grid none. */
 static PetscErrorCode Locate(const Grid *grid, PetscInt field, Parts *parts, PetscInt *cell)
 {
@@ -238,8 +214,7 @@ static PetscErrorCode CollectParts(const Cutting *cut, const Case *c, PetscInt b
   PetscFunctionReturn(0);
 }
 
-/* What is wrong with the mesh was told when its points were placed. */
-static PetscErrorCode CreateQuietly(const Grid *grid, const Case *c, PetscInt body, Grid **own)
+PetscErrorCode BodyMeshAgain(const Grid *grid, const Case *c, PetscInt body, Grid **own)
 {
   Diag *told;
 
@@ -251,41 +226,37 @@ static PetscErrorCode CreateQuietly(const Grid *grid, const Case *c, PetscInt bo
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BodyMeshNames(const Grid *grid, const Case *c, PetscInt body, const char *boundary, PetscBool fills,
-                             PetscBool *names)
+/* A name that the mesh has for sides means these, whatever the grid has of that name. */
+static PetscErrorCode ResolveName(const Grid *grid, const Grid *own, PetscBool of_shape, Selector *on)
 {
-  const BodySpec *spec = c->bodies + body;
-  Grid *own;
-  PetscInt faces = 0;
+  const GridSet *set = on->boundary && !of_shape ? grid_find_set(own, on->boundary) : NULL;
+  PetscInt faces = set ? set->n_faces : 0;
 
   PetscFunctionBeginUser;
-  *names = PETSC_FALSE;
-  if (!spec->mesh || (fills && spec->has_shape)) PetscFunctionReturn(0);
-  PetscCall(CreateQuietly(grid, c, body, &own));
-  const GridSet *set = own ? grid_find_set(own, boundary) : NULL;
-  if (set) faces = set->n_faces;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &faces, 1, MPIU_INT, MPI_MAX, grid->comm));
-  *names = (PetscBool)(faces > 0);
-  PetscCall(GridDestroy(&own));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &faces, 1, MPIU_INT, MPI_MAX, grid->comm));
+  if (!faces) put_on_side(grid, on);
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode BodyMeshPoints(const Grid *grid, const Case *c, PetscInt body, const Selector *on, PetscBool fills,
                               PetscBool pieces, PetscInt *n, PetscInt **cell, FacePoint **point)
 {
-  Cutting cut = {.kinematics = c->kinematics, .grid = grid, .on = on};
-  Parts parts = {0};
+  Selector at = *on;
+  Cutting cut = {.kinematics = c->kinematics, .grid = grid, .on = &at};
+  Parts parts = {0}, all = {0}; /* of this rank, and of all */
   Grid *own;
 
   PetscFunctionBeginUser;
-  PetscCall(CreateQuietly(grid, c, body, &own));
+  PetscCall(BodyMeshAgain(grid, c, body, &own));
   cut.own = own;
+  if (own) PetscCall(ResolveName(grid, own, (PetscBool)(fills && c->bodies[body].has_shape), &at));
   if (own) PetscCall(CollectParts(&cut, c, body, fills, pieces, &parts));
   PetscCall(GridDestroy(&own));
-  PetscCall(GatherParts(grid->comm, &parts));
-  PetscCall(PetscMalloc1(parts.n, cell));
-  PetscCall(Locate(grid, grid->n_fields > 1 ? case_field(c, body) : 0, &parts, *cell));
-  *n = parts.n;
-  *point = parts.point;
+  PetscCall(GatherAll(grid->comm, sizeof(FacePoint), parts.n, parts.point, &all.n, &all.point));
+  PetscCall(PetscFree(parts.point));
+  PetscCall(PetscMalloc1(all.n, cell));
+  PetscCall(Locate(grid, grid->n_fields > 1 ? case_field(c, body) : 0, &all, *cell));
+  *n = all.n;
+  *point = all.point;
   PetscFunctionReturn(0);
 }

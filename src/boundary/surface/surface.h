@@ -66,13 +66,11 @@ void surface_trim(const Trim *trim, Facet facet, const PetscReal *outward, Piece
 PetscErrorCode BodySurfacePoints(const Grid *grid, const Case *c, PetscInt body, const Selector *on, PetscBool pieces,
                                  PetscInt *n, PetscInt **cell, FacePoint **point);
 /* Collective. The same of a body with a mesh of its own: on sides of that mesh, of which the selector's boundary is a
- * physical group; fills: as in LoadsCreate. */
+ * physical group, or else a side of the box; fills: as in LoadsCreate. */
 PetscErrorCode BodyMeshPoints(const Grid *grid, const Case *c, PetscInt body, const Selector *on, PetscBool fills,
                               PetscBool pieces, PetscInt *n, PetscInt **cell, FacePoint **point);
-/* Collective. Has the body a mesh of its own whose sides have a boundary of this name? It means these, whatever the grid
- * calls so. Not where the body is a shape in that mesh, of which no boundary is a part. */
-PetscErrorCode BodyMeshNames(const Grid *grid, const Case *c, PetscInt body, const char *boundary, PetscBool fills,
-                             PetscBool *names);
+/* Collective. The mesh that the body brings, or NULL: what is wrong with it was told when its points were placed. */
+PetscErrorCode BodyMeshAgain(const Grid *grid, const Case *c, PetscInt body, Grid **own);
 /* How a body's surface is found where a load acts on it. */
 typedef enum { BORNE_BY_CELLS, BORNE_BY_SHAPE, BORNE_BY_MESH } Bearer;
 Bearer body_bearer(const BodySpec *body, PetscBool fills);

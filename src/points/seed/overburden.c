@@ -1,6 +1,7 @@
 /* Columns of material against gravity: a line from a position upwards leaves and enters bodies
  * through their outlines. */
 #include <stdlib.h>
+#include "base/gather.h"
 #include "grid/search/box_tree.h"
 #include "points/seed/outline.h"
 
@@ -78,29 +79,6 @@ static PetscErrorCode MakeTree(Overburden *o)
   PetscFunctionReturn(0);
 }
 
-/* Faces of all ranks, in the order of ranks. */
-static PetscErrorCode Gather(MPI_Comm comm, const Outline *outline, PetscInt *n, OutlineFace **all)
-{
-  PetscMPIInt size, mine, *count, *start;
-  MPI_Datatype type;
-
-  PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMPIIntCast(outline->n, &mine));
-  PetscCall(PetscMalloc2(size, &count, size + 1, &start));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, comm));
-  start[0] = 0;
-  for (PetscMPIInt r = 0; r < size; ++r) start[r + 1] = start[r] + count[r];
-  *n = start[size];
-  PetscCall(PetscMalloc1(*n, all));
-  PetscCallMPI(MPI_Type_contiguous((int)sizeof(OutlineFace), MPI_BYTE, &type));
-  PetscCallMPI(MPI_Type_commit(&type));
-  PetscCallMPI(MPI_Allgatherv(outline->face, mine, type, *all, count, start, type, comm));
-  PetscCallMPI(MPI_Type_free(&type));
-  PetscCall(PetscFree2(count, start));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode OverburdenCreate(MPI_Comm comm, PetscInt dim, const PetscReal up[3], PetscReal gap, PetscInt n_bodies,
                                 const Outline *outline, Overburden **overburden)
 {
@@ -114,7 +92,7 @@ PetscErrorCode OverburdenCreate(MPI_Comm comm, PetscInt dim, const PetscReal up[
   o->outline = outline;
   o->n_bodies = n_bodies;
   make_axes(dim, up, o->axis);
-  PetscCall(Gather(comm, outline, &o->n, &all));
+  PetscCall(GatherAll(comm, sizeof *all, outline->n, outline->face, &o->n, &all));
   PetscCall(PetscMalloc1(o->n, &o->slab));
   for (PetscInt k = 0; k < o->n; ++k) o->slab[k] = make_slab(o, &all[k]);
   PetscCall(PetscFree(all));

@@ -1,4 +1,5 @@
 /* Which sides of a body's cells are its surface. */
+#include "base/gather.h"
 #include "grid/search/tuple_table.h"
 #include "points/seed/outline.h"
 
@@ -37,25 +38,6 @@ PetscErrorCode OutlineSides(const Grid *source, PetscInt n_cells, const PetscInt
   PetscFunctionReturn(0);
 }
 
-/* The n x width numbers of each rank, on all of them. */
-static PetscErrorCode GatherAll(MPI_Comm comm, PetscInt n, const PetscInt *mine, PetscInt *n_all, PetscInt **all)
-{
-  PetscMPIInt size, count, *counts, *starts;
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscMPIIntCast(n, &count));
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscMalloc2(size, &counts, size + 1, &starts));
-  PetscCallMPI(MPI_Allgather(&count, 1, MPI_INT, counts, 1, MPI_INT, comm));
-  starts[0] = 0;
-  for (PetscMPIInt r = 0; r < size; ++r) starts[r + 1] = starts[r] + counts[r];
-  *n_all = starts[size];
-  PetscCall(PetscMalloc1(*n_all, all));
-  PetscCallMPI(MPI_Allgatherv(mine, count, MPIU_INT, *all, counts, starts, MPIU_INT, comm));
-  PetscCall(PetscFree2(counts, starts));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode OutlineSidesOfAll(const Grid *source, PetscInt n_cells, const PetscInt *chosen, unsigned char *outer)
 {
   const PetscInt width = cells[source->type].face_nodes;
@@ -67,10 +49,10 @@ PetscErrorCode OutlineSidesOfAll(const Grid *source, PetscInt n_cells, const Pet
   PetscCall(PetscMalloc1(n_cells * CELL_MOST_SIDES * width, &mine));
   for (PetscInt k = 0; k < n_cells * CELL_MOST_SIDES; ++k)
     if (outer[k]) side_nodes(source, chosen[k / CELL_MOST_SIDES], k % CELL_MOST_SIDES, PETSC_TRUE, mine + width * n++);
-  PetscCall(GatherAll(source->comm, width * n, mine, &n_all, &all));
-  PetscCall(TupleTableCreate(width, n_all / width, &seen));
-  PetscCall(PetscCalloc1(n_all / width, &times));
-  for (PetscInt k = 0; k < n_all / width; ++k) ++times[tuple_add(seen, all + width * k)];
+  PetscCall(GatherAll(source->comm, (size_t)width * sizeof *mine, n, mine, &n_all, &all));
+  PetscCall(TupleTableCreate(width, n_all, &seen));
+  PetscCall(PetscCalloc1(n_all, &times));
+  for (PetscInt k = 0; k < n_all; ++k) ++times[tuple_add(seen, all + width * k)];
   for (PetscInt k = 0; k < n_cells * CELL_MOST_SIDES; ++k) {
     if (!outer[k]) continue;
     side_nodes(source, chosen[k / CELL_MOST_SIDES], k % CELL_MOST_SIDES, PETSC_TRUE, key);

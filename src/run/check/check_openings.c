@@ -1,6 +1,7 @@
 /* Openings too narrow to let material through: gaps of less than two cells between held parts of
  * the outer boundary, and orifices on the axis of a body of revolution (their diameter counts). One
  * cell is shut, since all its nodes are held. In the plane only. */
+#include "base/gather.h"
 #include "run/check/check_private.h"
 
 /* Where held faces end: a node that belongs to one of them alone. */
@@ -39,25 +40,18 @@ static PetscErrorCode AddFaces(const Grid *grid, const Selector *on, unsigned ch
 static PetscErrorCode GatherEnds(const Model *m, const PetscReal *around, PetscInt *n, HeldEnd **ends)
 {
   const Grid *grid = m->grid;
-  PetscMPIInt ranks, mine = 0, *counts, *starts;
+  PetscInt mine = 0;
   HeldEnd *local;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(grid->comm, &ranks));
-  PetscCall(PetscMalloc3(grid->n_owned, &local, ranks, &counts, ranks + 1, &starts));
+  PetscCall(PetscMalloc1(grid->n_owned, &local));
   for (PetscInt node = 0; node < grid->n_owned; ++node) {
     const PetscReal *x = grid->x + 2 * node, *s = around + 3 * node;
     const PetscBool on_axis = m->c->kinematics->hoop && x[0] <= 0;
     if (s[0] == 1 && !on_axis) local[mine++] = (HeldEnd){{x[0], x[1]}, s[1], s[2]};
   }
-  mine *= 4;
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts, 1, MPI_INT, grid->comm));
-  starts[0] = 0;
-  for (PetscMPIInt r = 0; r < ranks; ++r) starts[r + 1] = starts[r] + counts[r];
-  *n = starts[ranks] / 4;
-  PetscCall(PetscMalloc1(*n, ends));
-  PetscCallMPI(MPI_Allgatherv(local, mine, MPIU_REAL, *ends, counts, starts, MPIU_REAL, grid->comm));
-  PetscCall(PetscFree3(local, counts, starts));
+  PetscCall(GatherAll(grid->comm, sizeof *local, mine, local, n, ends));
+  PetscCall(PetscFree(local));
   PetscFunctionReturn(0);
 }
 

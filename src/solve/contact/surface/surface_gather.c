@@ -1,4 +1,5 @@
 /* The points of a body that another one may reach, on all ranks. */
+#include "base/gather.h"
 #include "base/math/vector.h"
 #include "points/split.h"
 #include "solve/contact/contact.h"
@@ -107,27 +108,10 @@ static PetscErrorCode Carriers(const SurfaceInput *in, PetscInt g, SurfacePoint 
 /* What each rank has, on all: n things of a size, whose array is replaced. */
 static PetscErrorCode ShareArray(MPI_Comm comm, size_t size, PetscInt *n, void **array)
 {
-  PetscMPIInt ranks, mine, bytes, *count, *start;
-  MPI_Datatype type;
   void *all;
 
   PetscFunctionBeginUser;
-  PetscCallMPI(MPI_Comm_size(comm, &ranks));
-  PetscCall(PetscMPIIntCast(*n, &mine));
-  PetscCall(PetscMPIIntCast((PetscInt)size, &bytes));
-  PetscCallMPI(MPI_Type_contiguous(bytes, MPI_BYTE, &type));
-  PetscCallMPI(MPI_Type_commit(&type));
-  PetscCall(PetscMalloc2(ranks, &count, ranks + 1, &start));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, count, 1, MPI_INT, comm));
-  *n = start[0] = 0;
-  for (PetscMPIInt r = 0; r < ranks; ++r) {
-    *n += count[r];
-    PetscCall(PetscMPIIntCast(*n, start + r + 1));
-  }
-  PetscCall(PetscMalloc((size_t)*n * size, &all));
-  PetscCallMPI(MPI_Allgatherv(*array, mine, type, all, count, start, type, comm));
-  PetscCallMPI(MPI_Type_free(&type));
-  PetscCall(PetscFree2(count, start));
+  PetscCall(GatherAll(comm, size, *n, *array, n, &all));
   PetscCall(PetscFree(*array));
   *array = all;
   PetscFunctionReturn(0);
