@@ -7,10 +7,9 @@
  *   symmetrised)
  *
  * with mubar = mu tr bbar / 3 and c_dev = 2 mubar (I_sym - I x I / 3) - 2/3 |s| (n x I + I x n) of
- * the trial state. State: bbar, J, alpha. The algorithm keeps the trace of bbar and not its
- * determinant, so J is stored apart; the elastic energy of shape is mu/2 (tr bbar - 3 (det
- * bbar)^(1/3)), whose second term grows with the dissipation. Volumetric laws as in
- * neo_hookean_split.c: j2 with p = K (J - 1), j2-log with p = K ln J / J. */
+ * the trial state. State: bbar, J, alpha. What is kept of bbar beside s is its determinant, 1, and not its
+ * trace as in the thesis, with which the shear modulus mu tr bbar / 3 would grow by 1 + 2/3 alpha sigma_Y / mu.
+ * Volumetric laws as in neo_hookean_split.c: j2 with p = K (J - 1), j2-log with p = K ln J / J. */
 #include "material/algebra/volume.h"
 
 enum { YIELD = SPLIT_N, HARDENING };
@@ -38,6 +37,24 @@ LANES_INLINE void flow_of(const PetscReal *parameters, const Lanes *norm, const 
   const LaneBits plastic = f > 16.0 * PETSC_MACHINE_EPSILON * *mubar;
   lanes_select(&plastic, &full, &none, gamma);
   lanes_select(&plastic, &slope, &none, x);
+}
+
+/* Where there is flow, the isotropic part x of bbar that has, with its deviator d, the determinant 1: x^3 - j2 x + j3
+ * is convex above its largest root, and the trace of before leads to a larger one, so that Newton comes down to it. A
+ * lane stands still once it is there, whatever its neighbours do. */
+LANES_INLINE void keep_volume(const Lanes *flow, const Lanes *mean, Lanes bbar[6])
+{
+  Lanes d[6], j3, x = *mean;
+  for (int k = 0; k < 6; ++k) d[k] = bbar[k] - (k < 3 ? x : 0.0 * x);
+  const Lanes j2 = 0.5 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) + d[3] * d[3] + d[4] * d[4] + d[5] * d[5];
+  lanes_sym_det(d, &j3);
+  LaneBits active = *flow > 0.0;
+  for (int iteration = 0; iteration < 50 && lanes_any(&active); ++iteration) {
+    const Lanes x2 = x * x, next = x - (x2 * x - j2 * x + j3 - 1.0) / (3.0 * x2 - j2), way = x - next;
+    lanes_select(&active, &next, &x, &x);
+    active &= way > 4.0 * PETSC_MACHINE_EPSILON * x;
+  }
+  for (int k = 0; k < 3; ++k) bbar[k] += x - *mean;
 }
 
 /* c = a I x I + 2 g I_sym + r (n x I + I x n) + n x w of one point. */
@@ -109,6 +126,7 @@ LANES_INLINE LawStatus update_lanes(const PetscReal *parameters, PetscInt n, con
     now[k] = b[k] - back / mu;
     t[k] = s[k] - back + (k < 3 ? r.q : 0.0 * r.q);
   }
+  keep_volume(&r.gamma, &mean, now);
   now[7] += sqrt(2.0 / 3.0) * r.gamma;
   lanes_store(N_STATE, n, now, state);
   lanes_store(6, n, t, tau);
@@ -125,7 +143,7 @@ static LawStatus update(const PetscReal *parameters, PetscInt n, const PetscReal
 
 static PetscReal energy(const PetscReal *parameters, const PetscReal *state)
 {
-  const PetscReal shape = state[0] + state[1] + state[2] - 3.0 * cbrt(sym_det(state));
+  const PetscReal shape = state[0] + state[1] + state[2] - 3.0;
   return volume_energy(split_volume(parameters), parameters[SPLIT_BULK], state[6]) +
          0.5 * parameters[SPLIT_SHEAR] * shape;
 }
@@ -143,12 +161,11 @@ static PetscBool initial_stress(const PetscReal *parameters, const PetscReal sig
   return shape_from_stress(mu, J, sigma, state);
 }
 
-/* The determinant of bbar, which flow has changed, stays. */
 static PetscBool bear(const PetscReal *parameters, const PetscReal tau[6], PetscReal *state)
 {
   const PetscReal mean = (tau[0] + tau[1] + tau[2]) / 3.0;
   state[6] = volume_from_kirchhoff(split_volume(parameters), parameters[SPLIT_BULK], mean, state[6]);
-  return state[6] > 0.0 && shape_of_det(sym_det(state), parameters[SPLIT_SHEAR], 1.0, tau, state);
+  return state[6] > 0.0 && shape_from_stress(parameters[SPLIT_SHEAR], 1.0, tau, state);
 }
 
 static void prepare_linear(const Elasticity *elastic, const PetscReal *given, PetscReal *packed)

@@ -5,11 +5,9 @@
 #include "material/law.h"
 #include <math.h>
 
-/* bbar = s / mu + x I with s = J dev sigma, where x > 0 makes det bbar = det. That determinant, x^3 -
- * j2 x + j3, is convex above its largest root and larger at the start: Newton comes down to it
- * without overshoot. */
-static inline PetscBool shape_of_det(PetscReal det, PetscReal mu, PetscReal J, const PetscReal sigma[6],
-                                     PetscReal *bbar)
+/* bbar = s / mu + x I with s = J dev sigma, where x > 0 makes det bbar = 1. That determinant, x^3 - j2 x + j3, is
+ * convex above its largest root and larger at the start: Newton comes down to it without overshoot. */
+static inline PetscBool shape_from_stress(PetscReal mu, PetscReal J, const PetscReal sigma[6], PetscReal *bbar)
 {
   const PetscReal mean = (sigma[0] + sigma[1] + sigma[2]) / 3.0;
   PetscReal s[6], norm2 = 0.0;
@@ -18,20 +16,14 @@ static inline PetscBool shape_of_det(PetscReal det, PetscReal mu, PetscReal J, c
     norm2 += (k < 3 ? 1.0 : 2.0) * s[k] * s[k];
   }
   const PetscReal j2 = 0.5 * norm2, j3 = sym_det(s);
-  PetscReal x = cbrt(det) + sqrt(norm2);
+  PetscReal x = 1.0 + sqrt(norm2);
   for (int iteration = 0; iteration < 200; ++iteration) {
-    const PetscReal step = (x * x * x - j2 * x + j3 - det) / (3.0 * x * x - j2);
+    const PetscReal step = (x * x * x - j2 * x + j3 - 1.0) / (3.0 * x * x - j2);
     x -= step;
     if (!(fabs(step) > 2.0 * PETSC_MACHINE_EPSILON * x)) break;
   }
   for (int k = 0; k < 6; ++k) bbar[k] = s[k] + (k < 3 ? x : 0.0);
-  return isfinite(x) && fabs(sym_det(bbar) - det) < 1e-10 * det && bbar[0] > 0.0 &&
-         bbar[0] * bbar[1] > bbar[3] * bbar[3];
-}
-
-static inline PetscBool shape_from_stress(PetscReal mu, PetscReal J, const PetscReal sigma[6], PetscReal *bbar)
-{
-  return shape_of_det(1.0, mu, J, sigma, bbar);
+  return isfinite(x) && fabs(sym_det(bbar) - 1.0) < 1e-10 && bbar[0] > 0.0 && bbar[0] * bbar[1] > bbar[3] * bbar[3];
 }
 
 /* ln J with J p = K ln J: y exp(-y) = p / K has its stable solution below y = 1, where the pressure
