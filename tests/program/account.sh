@@ -73,6 +73,28 @@ for ranks in 1 2 3; do
   awk -F, 'NR > 1 { if ($3 < last - 5e-4) exit 1; last = $3 }' disk$ranks/history.csv || fail "$name: friction gives energy: $(cut -d, -f3 disk$ranks/history.csv | tr '\n' ' ')"
 done
 
+# what a constraint holds a node with is a reaction, and nothing that steps leave open: the account is told, and its loss
+cat >held.yaml <<'END'
+kinematics: plane-strain
+method: gmm
+basis: {mls: {}}
+analysis: {type: dynamic, end: 0.1, step: 2e-3}
+grid: {box: {min: [0, 0], max: [1, 2]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 2]}}, material: m, velocity: [0, -3]}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{name: side, on: {x: 0}, fix: [x]}, {name: foot, on: {y: 0}, fix: [y]}]
+measures: {balance: {energy: balance}, transfer: {energy: transfer}}
+output: {history: {steps: 1}}
+END
+for basis in mls lme; do
+  turn
+  expect "held by constraints, $basis on $ranks" 0 on_ranks $ranks "$talus" run held.yaml --out held --set "basis={$basis: {essential: constraints}}"
+  closes held
+  says out.txt "J that came in (start, loads, gravity, prescribed motion)"
+  says err.txt "the transfer to what stops or holds it took"
+  rm -r held
+done
+
 # nothing acts: round-off over round-off
 expect "nothing acts" 0 "$talus" run case.yaml --out none --quiet --set 'analysis={type: static, steps: 4}' --set formulation=mixed \
   --set 'bodies=[{name: b, shape: {box: {min: [0, 0], max: [0.3, 0.4]}}, material: m}]' \

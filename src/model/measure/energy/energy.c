@@ -250,7 +250,7 @@ static PetscErrorCode RestWork(const Model *m, PetscReal *work)
 }
 
 /* What forces out of balance, as the step left them, may have done: whatever the sign, or the way that they turned with
- * their node. */
+ * their node. Where a constraint holds a node its force is the reaction by now (accept.c), and nothing is open. */
 static PetscReal open_work(const Model *m)
 {
   const NodalFields *n = m->nodes;
@@ -259,7 +259,7 @@ static PetscReal open_work(const Model *m)
     PetscReal force = 0, way = 0;
     if (!n->touched[node]) continue;
     for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i) {
-      if (!n->fixed[i]) force += PetscSqr(n->force[i]);
+      if (!n->fixed[i] && !m->boundary->fixed[i]) force += PetscSqr(n->force[i]);
       way += PetscSqr(n->du[i]);
     }
     sum += PetscSqrtReal(force * way);
