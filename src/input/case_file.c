@@ -272,11 +272,11 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   PetscCall(DefaultTransfer(*c));
   PetscCall(ResolveFormulation(document->root, whole, *c));
   default_stabilisation(yaml_find(document->root, "stabilisation"), *c);
-  PetscCall(DefaultScheme(*c));
+  const YamlNode *analysis = yaml_find(document->root, "analysis");
+  PetscCall(DefaultScheme(analysis, *c));
   if (diag_errors(diag) == before) check_newmark(*c, diag); /* what was not read has no numbers yet */
   resolve_equilibrium(yaml_find(document->root, "initial"), *c);
   find_bearing(*c);
-  const YamlNode *analysis = yaml_find(document->root, "analysis");
   PetscCall(ResolveRaised(analysis ? yaml_find(analysis, "limit") : NULL, diag, *c));
   resolve_release(*c, (*c)->spec);
   PetscFunctionReturn(0);

@@ -4,6 +4,8 @@
 #include "method/method.h"
 #include "method/transfer/transfer.h"
 
+#define BOSSAK_OF_CLOUDS (-0.1)
+
 /* Do points hand over more than a mean, */
 static PetscBool keeps_slopes(const Case *c)
 {
@@ -80,13 +82,29 @@ PetscErrorCode DefaultTransfer(Case *c)
   PetscFunctionReturn(0);
 }
 
-/* An acceleration that points carry is out of balance on the next grid (docs/theory.md, "The
- * midpoint rule"); that of what is bonded, with all functions. */
-PetscErrorCode DefaultScheme(Case *c)
+/* Clouds that choose their nodes anew put accelerations out of balance, and the trapezoidal rule lets that ring for
+ * ever: what flows makes energy by it (docs/theory.md, section 6). */
+static PetscBool rings_in_clouds(const YamlNode *given, const Case *c)
 {
   const AnalysisSpec *a = &c->analysis;
+  const Method *method = c->method ? method_find(c->method) : NULL;
+  if (a->type != ANALYSIS_DYNAMIC || !method || !method->clouds || a->scheme) return PETSC_FALSE;
+  if (yaml_find(given, "bossak") || yaml_find(given, "beta") || yaml_find(given, "gamma")) return PETSC_FALSE;
+  return specs_yield(c->n_materials, c->materials);
+}
+
+/* An acceleration that points carry is out of balance on the next grid (docs/theory.md, "The
+ * midpoint rule"); that of what is bonded, with all functions. */
+PetscErrorCode DefaultScheme(const YamlNode *given, Case *c)
+{
+  AnalysisSpec *a = &c->analysis;
 
   PetscFunctionBeginUser;
+  if (rings_in_clouds(given, c)) {
+    a->bossak = BOSSAK_OF_CLOUDS;
+    a->beta = analysis_usual_beta(a);
+    a->gamma = analysis_usual_gamma(a);
+  }
   const PetscBool bonded = keeps_slopes(c) && case_has_contact(c, CONTACT_BONDED);
   if ((keeps_all(c) || bonded) && !a->scheme && a->bossak == 0 && !analysis_tunes_newmark(a))
     PetscCall(PetscStrallocpy("midpoint", &c->analysis.scheme));

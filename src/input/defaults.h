@@ -9,4 +9,5 @@ void default_stabilisation(const YamlNode *given, Case *c);
 const char *default_transfer(const Case *c, const char **why);
 /* Where the case names none. */
 PetscErrorCode DefaultTransfer(Case *c);
-PetscErrorCode DefaultScheme(Case *c);
+/* given: the mapping `analysis`, or NULL. */
+PetscErrorCode DefaultScheme(const YamlNode *given, Case *c);

@@ -182,6 +182,7 @@ static Case usual_of(const Case *c)
   a->scheme = NULL;
   a->beta = analysis_usual_beta(a);
   a->gamma = analysis_usual_gamma(a);
+  a->bossak = 0; /* where it is another one it has an effect */
   a->transfer = (char *)default_transfer(&usual, NULL);
   a->smallest = a->step / 1024;
   a->largest = a->step;

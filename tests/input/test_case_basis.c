@@ -170,6 +170,42 @@ static void Midpoint(void **state)
     "materials:\n  rubber: {law: mohr-coulomb, density: 2000, young: 1e7, poisson: 0.3, friction_angle: 30, " \
     "dilatancy_angle: 0, cohesion: 1e3}\n"
 
+/* What yields in clouds is damped, unless the case says how time goes; a resolved case reads back to the same. */
+static void Damped(void **state)
+{
+#define CLOUDS(method, type, rest)                                                                \
+  "kinematics: plane-strain\nmethod: " method "\nanalysis: {type: " type ", step: 1, end: 2" rest \
+  "}\n" PLAIN_GRID PLAIN_BODIES
+#define SOIL "materials: {rubber: {law: j2, density: 2000, young: 1e7, poisson: 0.3, yield_stress: 1e3}}\n"
+  static const struct {
+    const char *text;
+    PetscReal bossak, gamma;
+  } damped[] = {
+    {CLOUDS("gmm", "dynamic", "") SOIL, -0.1, 0.6},
+    {CLOUDS("gmm", "dynamic", "") PLAIN_MATERIALS, 0, 0.5},
+    {CLOUDS("fem", "dynamic", "") SOIL, 0, 0.5},
+    {CLOUDS("gmm", "static", "") SOIL, 0, 0.5},
+    {CLOUDS("gmm", "dynamic", ", bossak: 0") SOIL, 0, 0.5},
+    {CLOUDS("gmm", "dynamic", ", bossak: -0.3") SOIL, -0.3, 0.8},
+    {CLOUDS("gmm", "dynamic", ", scheme: newmark") SOIL, 0, 0.5},
+    {CLOUDS("gmm", "dynamic", ", gamma: 0.55") SOIL, 0, 0.55},
+  };
+  char *text;
+  (void)state;
+  for (size_t i = 0; i < sizeof damped / sizeof damped[0]; ++i) {
+    Case *c = read_good(damped[i].text);
+    for (int again = 0; again < 2; ++again) {
+      ASSERT_NEAR(c->analysis.bossak, damped[i].bossak, 1e-14);
+      ASSERT_NEAR(c->analysis.gamma, damped[i].gamma, 1e-14);
+      assert_int_equal(CaseToYaml(c, &text), 0);
+      assert_int_equal(CaseDestroy(&c), 0);
+      c = read_good(text);
+      PetscFree(text);
+    }
+    assert_int_equal(CaseDestroy(&c), 0);
+  }
+}
+
 /* Nodes follow others in statics, more of them where a law yields, and in all stages of a case, that they belong to the
  * same nodes. */
 static void Followers(void **state)
@@ -218,7 +254,9 @@ static void Idle(void **state)
     {STILL(", beta: 0.3, gamma: 0.6, transfer: consistent, keep_velocity: true") BEAM(", spin: 2"),
      NULL,
      {"analysis.beta", "analysis.gamma", "analysis.transfer", "analysis.keep_velocity", "bodies[0].spin"}},
-    {STILL(", damping: 0, beta: 0.25, mass: consistent, transfer: thesis") BEAM(", velocity: [0, 0]"), NULL, {NULL}},
+    {STILL(", damping: 0, bossak: 0, beta: 0.25, mass: consistent, transfer: thesis") BEAM(", velocity: [0, 0]"),
+     NULL,
+     {NULL}},
     {STILL(", courant: 0.5, update: usl") BEAM(""), NULL, {"analysis.courant", "analysis.update"}},
     {STILL("") BEAM("") STABLE, NULL, {"stabilisation.stiffness", "stabilisation.mass", "stabilisation.inertia"}},
     {STILL("") BEAM("") "boundary: [{on: {x: 0}, fix: [x, y], amplitude: [[0, 1], [1, 0]]}]\n"
@@ -310,8 +348,8 @@ static void Resolved(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(Chosen), cmocka_unit_test(Written),  cmocka_unit_test(Midpoint),   cmocka_unit_test(Followers),
-    cmocka_unit_test(Idle),   cmocka_unit_test(Resolved), cmocka_unit_test(Transferred)};
+    cmocka_unit_test(Chosen),    cmocka_unit_test(Written), cmocka_unit_test(Midpoint), cmocka_unit_test(Damped),
+    cmocka_unit_test(Followers), cmocka_unit_test(Idle),    cmocka_unit_test(Resolved), cmocka_unit_test(Transferred)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

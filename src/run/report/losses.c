@@ -11,6 +11,8 @@
 
 /* share of the energy that came in: about what granular flows lose on usual grids */
 #define TRANSFER_ALLOWED 0.05
+/* times all that came in */
+#define MOTION_ALLOWED 10
 /* share of the volume: unevenness of points that have moved through many cells is 0.1 to 0.2 */
 #define CROWD_ALLOWED 0.3
 /* cells that a loaded surface may move: until points beside it cross to the next one */
@@ -132,6 +134,24 @@ static PetscBool loses_at_lines(const Model *m)
                      !strcmp(m->c->basis.kind, "cell"));
 }
 
+/* Clouds that choose their nodes anew have other forces than those that accelerations balanced, and in short steps that
+ * rings more often: what damps it best. */
+static const char *damps_clouds(const Model *m)
+{
+  const AnalysisSpec *a = &m->c->analysis;
+  if (strcmp(m->c->basis.kind, "lme") != 0) return "`basis: {lme: {}}`, or ";
+  if (a->bossak > -0.1) return "`analysis: {bossak: -0.1}`, or ";
+  return a->bossak > -0.3 ? "`analysis: {bossak: -0.3}`, or " : "";
+}
+
+static void hint_of_clouds(const Model *m, Diag *diag)
+{
+  diag_hint(diag,
+            "clouds that change where material is pressed flat or flows past what holds it make it, and shorter "
+            "steps more: %smethods mpm and fem (docs/guide/limits.md)",
+            damps_clouds(m));
+}
+
 static void warn_of_transfer(const Model *m, Diag *diag)
 {
   const PetscReal taken = taken_by_transfer(m), share = share_of_input(m, taken);
@@ -145,7 +165,8 @@ static void warn_of_transfer(const Model *m, Diag *diag)
     m->method->restores_grid ? "the transfer between points and grid" : "the transfer to what stops or holds it",
     share > 0 ? "took" : "gave", (double)(100 * PetscAbsReal(share)), (double)PetscAbsReal(taken),
     (double)m->most_energy);
-  if (implicit && m->space->transfer == transfers[0] && !materials_yield(m->c->n_materials, m->materials))
+  if (m->method->clouds && share < 0) hint_of_clouds(m, diag);
+  else if (implicit && m->space->transfer == transfers[0] && !materials_yield(m->c->n_materials, m->materials))
     diag_hint(
       diag,
       m->formulation->pressure
@@ -172,6 +193,23 @@ static void warn_of_transfer(const Model *m, Diag *diag)
     diag_hint(diag,
               "smaller cells where bodies meet and smaller steps lessen it; measure {energy: transfer} shows when "
               "(docs/theory.md, Energy)");
+}
+
+/* Where steps leave open more than came in the transfer means nothing, and motion alone tells what was made. */
+static PetscErrorCode WarnOfRunaway(Model *m, Diag *diag)
+{
+  Energies e;
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelEnergies(m, &e));
+  if (case_is_static(&m->c->analysis) || !(m->most_energy > m->least_energy)) PetscFunctionReturn(0);
+  if (!(e.kinetic > MOTION_ALLOWED * m->most_energy)) PetscFunctionReturn(0);
+  if (share_of_input(m, taken_by_transfer(m)) < -TRANSFER_ALLOWED) PetscFunctionReturn(0); /* which says it */
+  diag_warning(diag, NULL, "what moves has %.2g times all the energy that came in (%.4g of %.4g J): the run made it",
+               (double)(e.kinetic / m->most_energy), (double)e.kinetic, (double)m->most_energy);
+  if (m->method->clouds) hint_of_clouds(m, diag);
+  else diag_hint(diag, "measure {energy: kinetic} shows when; shorter steps, or smaller cells there");
+  PetscFunctionReturn(0);
 }
 
 /* Stress that acts at the end of a step and not at its start, or the other way round, has half its
@@ -381,6 +419,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
                  "points that left the grid were kept on its boundary %.0f times, at most %.0f of %.4g kg in a step",
                  (double)o->held, (double)o->held_most, (double)o->held_most_mass);
   warn_of_transfer(m, diag);
+  PetscCall(WarnOfRunaway(m, diag));
   PetscCall(WarnOfGain(m, diag));
   PetscCall(WarnOfCrowd(m, diag));
   PetscCall(WarnOfMovedLoads(m, diag));
