@@ -151,3 +151,14 @@ PetscErrorCode CaseDestroy(Case **c);
 /* Value at time t of what is applied: without an amplitude it grows with pseudo-time in statics and
  * stands at once in dynamics. */
 PetscReal case_factor(const Case *c, const Amplitude *amplitude, PetscReal t);
+
+/* What a table gives factors of: it matters what forces do within a step; of a place or a parameter, what it is at the
+ * step's end; prescribed velocities are integrated. */
+typedef enum { TABLE_FORCE, TABLE_PLACE, TABLE_SPEED, TABLE_PARAMETER } TableUse;
+typedef void (*TableVisit)(void *context, const Amplitude *table, TableUse use, const char *path);
+/* Each table over time of what is there, but for that of what is raised to its limit (tables.c). */
+void case_visit_tables(const Case *c, TableVisit visit, void *context);
+/* The first time after t at which one of these tables turns, s; PETSC_MAX_REAL if none does. */
+PetscReal case_corner_after(const Case *c, PetscReal t);
+/* Does any of them begin to change between t and `until`, both counted, having stood still before? */
+PetscBool case_begins_within(const Case *c, PetscReal t, PetscReal until);

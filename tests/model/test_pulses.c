@@ -6,16 +6,18 @@
 typedef struct {
   PetscInt n;
   PetscReal time[6], value[6];
-  const char *words; /* NULL: nothing is lost */
+  const char *words, *statics; /* NULL: nothing is lost */
 } Kind;
 
+#define PEAK "it goes to 1 at t = "
+
 static const Kind kinds[] = {
-  {5, {0, 0.0993, 0.0996, 0.0999, 1}, {0, 0, 1, 0, 0}, "its integral is 0.0003 s, and steps take 0 s for it"},
-  {5, {0, 0.0997, 0.1, 0.1003, 1}, {0, 0, 1, 0, 0}, "its integral is 0.0003 s, and steps take 0.002 s for it"},
-  {6, {0, 0.0981, 0.0982, 0.0991, 0.0992, 1}, {0, 0, 1, 1, 0, 0}, "steps take 0 s for it"},
-  {5, {0, 0.097, 0.099, 0.101, 1}, {0, 0, 1, 0, 0}, NULL},             /* sides as long as a step */
-  {4, {0, 0.0993, 0.0994, 1}, {0, 0, 1, 1}, NULL},                     /* a jump */
-  {5, {0, 0.05, 0.0503, 0.0506, 0.1}, {0, 0.5, 0.503, 0.506, 1}, NULL} /* on a line */
+  {5, {0, 0.0993, 0.0996, 0.0999, 1}, {0, 0, 1, 0, 0}, "its integral is 0.0003 s, and steps take 0 s for it", PEAK},
+  {5, {0, 0.0997, 0.1, 0.1003, 1}, {0, 0, 1, 0, 0}, "its integral is 0.0003 s, and steps take 0.002 s for it", NULL},
+  {6, {0, 0.0981, 0.0982, 0.0991, 0.0992, 1}, {0, 0, 1, 1, 0, 0}, "steps take 0 s for it", PEAK},
+  {5, {0, 0.097, 0.099, 0.101, 1}, {0, 0, 1, 0, 0}, NULL, PEAK},             /* sides as long as a step */
+  {4, {0, 0.0993, 0.0994, 1}, {0, 0, 1, 1}, NULL, NULL},                     /* a jump */
+  {5, {0, 0.05, 0.0503, 0.0506, 0.1}, {0, 0.5, 0.503, 0.506, 1}, NULL, NULL} /* on a line */
 };
 
 /* A block with a traction of that amplitude. */
@@ -36,7 +38,52 @@ static void test_loads(void **state)
     block(&b, k % 2 ? "fem" : "mpm", kinds + k);
     bench_warned(&b, PETSC_COMM_WORLD, "loads.tractions[0].amplitude", kinds[k].words);
     b.c.analysis.type = ANALYSIS_STATIC;
-    bench_warned(&b, PETSC_COMM_WORLD, "loads.tractions[0].amplitude", NULL);
+    bench_warned(&b, PETSC_COMM_WORLD, "loads.tractions[0].amplitude", kinds[k].statics);
+  }
+}
+
+/* What steps make of all of it: sides shorter than a step, a step apart and more. In steps that may grow its corners are
+ * ends of steps, but for those that lie closer together than `step`. */
+static void test_sums(void **state)
+{
+  static const struct {
+    Kind kind;
+    PetscReal largest;
+  } sums[] = {
+    {{5,
+      {0, 0.0072, 0.0076, 0.011, 0.0114},
+      {0, 0, 1, 1, 0},
+      "its integral over the run is 0.0038 s, and steps of 0.002 s take 0.004 s",
+      NULL},
+     STEP},
+    {{5, {0, 0.021, 0.0230, 0.031, 0.033}, {0, 0, 1, 1, 0}, NULL, NULL}, STEP},
+    {{5, {0, 0.021, 0.0232, 0.031, 0.0333}, {0, 0, 1, 1, 0}, NULL, NULL}, 50 * STEP},
+    {{5, {0, 0.021, 0.0212, 0.0233, 0.0235}, {0, 0, 1, 1, 0}, "its integral over the run", NULL}, 50 * STEP},
+  };
+  (void)state;
+  EACH_OF (k, sums) {
+    Bench b;
+    block(&b, "fem", &sums[k].kind);
+    b.c.analysis.largest = sums[k].largest;
+    bench_warned(&b, PETSC_COMM_WORLD, "loads.tractions[0].amplitude", sums[k].kind.words);
+  }
+}
+
+/* A factor on a parameter is what it is at the end of a step, in statics and in dynamics. */
+static void test_parameters(void **state)
+{
+  NamedAmplitude soft = {.name = "young"};
+  (void)state;
+  for (int statics = 0; statics < 2; ++statics) {
+    Bench b;
+    block(&b, "fem", kinds);
+    soft.amplitude = b.load[0].amplitude;
+    soft.amplitude.value = (PetscReal[]){1, 1, 0.1, 1, 1};
+    b.c.n_loads = 0;
+    if (statics) b.c.analysis.type = ANALYSIS_STATIC;
+    b.c.materials[0].n_amplitudes = 1;
+    b.c.materials[0].amplitudes = &soft;
+    bench_warned(&b, PETSC_COMM_WORLD, "amplitude.young", "it goes to 0.1 at t = 0.0996 s and back");
   }
 }
 
@@ -96,7 +143,8 @@ static void test_jumps(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_loads), cmocka_unit_test(test_motions),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_loads), cmocka_unit_test(test_sums),
+                                     cmocka_unit_test(test_parameters), cmocka_unit_test(test_motions),
                                      cmocka_unit_test(test_jumps)};
   return run_model_tests(argc, argv, tests);
 }

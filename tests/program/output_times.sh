@@ -103,6 +103,38 @@ rm cut/timings.txt
 expect "a peak, resumed" 0 "$talus" run --resume cut --quiet
 cmp -s peak/history.csv cut/history.csv || fail "$name: another history"
 
+# Steps that may grow go over no pulse: the free square has all of its impulse, 1 kN for 0.1 s, whatever rests before.
+cat >pulse.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: dynamic, end: 1, step: 0.01, largest: 0.4}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.5}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+loads: {tractions: [{on: {x: 1}, value: [1000, 0], amplitude: [[0, 0], [0.5, 0], [0.53, 1], [0.6, 1], [0.63, 0]]}]}
+measures: {p: {momentum: x}}
+output: {every: end}
+checkpoint: {steps: 1, keep: 99}
+END
+for ranks in 3 1; do
+  expect "a pulse on $ranks" 0 on_ranks $ranks "$talus" run pulse.yaml --out pulse --force --quiet
+  lacks err.txt warning
+  awk -F, 'END { exit ($3 - 100) ^ 2 > 1e-8 || $2 > 25 }' pulse/history.csv || fail "$name: $(tail -n 1 pulse/history.csv)"
+done
+cp -r pulse pulse_cut
+ls pulse_cut/checkpoint_*.h5 | sed -n '9,$p' | xargs rm
+rm pulse_cut/timings.txt
+expect "a pulse, resumed" 0 "$talus" run --resume pulse_cut --quiet
+cmp -s pulse/history.csv pulse_cut/history.csv || fail "$name: another history"
+# So do they with factors on a material, and with the peak of a load of statics.
+expect "a softer square" 0 "$talus" run pulse.yaml --out soft --quiet --set 'materials.m.amplitude={young: [[0, 1], [0.7, 1], [0.8, 0.5], [0.804, 0.52], [0.808, 0.5]]}'
+awk -F, '{ n += ($1 - 0.7) ^ 2 < 1e-16; m += ($1 - 0.8) ^ 2 < 1e-16 } END { exit n != 1 || m != 1 }' soft/history.csv ||
+  fail "$name: $(cut -d, -f1 soft/history.csv | tr '\n' ' ')"
+awk -F, 'NR > 2 && $1 - t < 0.00999 { exit 1 } { t = $1 }' soft/history.csv || fail "$name: a step shorter than asked for"
+expect "a peak in long steps" 0 "$talus" run peak.yaml --out long --quiet --set materials.m.cohesion=1e9 --set analysis.largest=2
+awk -F, '{ n += ($1 - 1) ^ 2 < 1e-16; m += ($1 - 2) ^ 2 < 1e-16 } END { exit n != 1 || m != 1 || NR > 12 }' long/history.csv ||
+  fail "$name: $(cut -d, -f1 long/history.csv | tr '\n' ' ')"
+
 # The last of so many equal steps ends at the end: ten tenths sum up to 0.9999999999999999
 for steps in 3 10 49; do
   expect "the end of $steps steps" 0 "$talus" run peak.yaml --out equal --force --quiet --set materials.m.cohesion=1e9 --set analysis.end=1 --set analysis.steps=$steps --set output.every=2

@@ -1,12 +1,38 @@
 /* One step of any method, as algorithms 1 and 2 of the thesis have it. */
 #include "model/model_private.h"
 
+#define ROUNDING 1e-9 /* of a step: times are sums */
+
+/* What searches try is no time. */
+static PetscBool seeks(const Model *m)
+{
+  return (PetscBool)(m->raised.rising || m->strength.trying || m->initial.seeking);
+}
+
+/* Steps that have grown are no longer than `step` where a table begins to change, and grow anew from there. */
+static void begin_anew(Model *m)
+{
+  const PetscReal step = m->c->analysis.step;
+  if (seeks(m) || m->control.next <= (1 + ROUNDING) * step) return;
+  if (case_begins_within(m->c, m->time, m->time + (1 - ROUNDING) * step)) m->control.next = step;
+}
+
+/* How long the next step of dt may be at most: one longer than `step` ends where a table turns, the last two of the
+ * way there in equal parts, or it is of `step`. */
+static PetscReal until_corner(const Model *m, PetscReal dt)
+{
+  const PetscReal step = m->c->analysis.step;
+  if (seeks(m) || dt <= (1 + ROUNDING) * step) return PETSC_MAX_REAL;
+  const PetscReal way = case_corner_after(m->c, m->time) - m->time;
+  if (way > dt && way < dt + step && way >= 2 * step) return way / 2;
+  return PetscMax(way, step);
+}
+
 /* In statics steps that were halved lead back to the times that were asked for: what changes with them has its corners
- * there. What searches try is no time. */
+ * there. */
 static PetscReal until_return(const Model *m)
 {
-  const PetscBool seeks = (PetscBool)(m->raised.rising || m->strength.trying || m->initial.seeking);
-  if (m->scheme->inertia || seeks) return PETSC_MAX_REAL;
+  if (m->scheme->inertia || seeks(m)) return PETSC_MAX_REAL;
   return step_control_return(&m->control, &m->c->analysis, m->time - m->c->start);
 }
 
@@ -14,6 +40,8 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
 {
   const PetscReal change = m->walls ? walls_until_change(m->walls, m->time) : PETSC_MAX_REAL;
   limit = PetscMin(limit, change); /* no step goes over the time at which a wall appears or vanishes */
+  begin_anew(m);
+  limit = PetscMin(limit, until_corner(m, PetscMin(limit, m->control.next)));
   const PetscReal back = until_return(m);
   const PetscBool returning = (PetscBool)(back < PetscMin(limit, m->control.next));
   limit = PetscMin(limit, back);
