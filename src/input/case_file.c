@@ -282,6 +282,13 @@ static PetscErrorCode ReadDocument(const char *file, YamlDocument *document, Dia
   PetscFunctionReturn(0);
 }
 
+/* Since when an amplitude is there, and whether this stage has said it again. */
+static void tell_age(const YamlNode *node, Amplitude *amplitude)
+{
+  amplitude->since = node->stage;
+  amplitude->repeated = node->repeated;
+}
+
 /* Since when each thing of a stage is there. */
 static void tell_ages(const YamlNode *root, Case *c)
 {
@@ -291,16 +298,17 @@ static void tell_ages(const YamlNode *root, Case *c)
   const YamlNode *measures = yaml_find(root, "measures");
   const YamlNode *gravity = yaml_find(loads, "gravity_amplitude");
   if (!gravity) gravity = yaml_find(loads, "gravity");
-  if (gravity) c->gravity_amplitude.since = gravity->stage;
-  for (PetscInt i = 0; i < c->n_boundary; ++i) c->boundary[i].amplitude.since = boundary->child[i]->stage;
+  if (gravity) tell_age(gravity, &c->gravity_amplitude);
+  for (PetscInt i = 0; i < c->n_boundary; ++i) tell_age(boundary->child[i], &c->boundary[i].amplitude);
   for (PetscInt i = 0; i < c->n_measures; ++i) c->measures[i].since = measures->child[i]->stage;
   for (PetscInt i = 0; i < c->n_walls; ++i) {
-    c->walls[i].since = c->walls[i].mass.amplitude.since = walls->child[i]->stage;
-    for (PetscInt k = 0; k < c->walls[i].n_motions; ++k) c->walls[i].motions[k].amplitude.since = c->walls[i].since;
+    c->walls[i].since = walls->child[i]->stage;
+    tell_age(walls->child[i], &c->walls[i].mass.amplitude);
+    for (PetscInt k = 0; k < c->walls[i].n_motions; ++k) tell_age(walls->child[i], &c->walls[i].motions[k].amplitude);
   }
   for (PetscInt l = 0, n = 0; l < 3; ++l) {
     const YamlNode *list = yaml_find(loads, lists[l]);
-    for (PetscInt i = 0; list && i < list->n; ++i) c->loads[n++].amplitude.since = list->child[i]->stage;
+    for (PetscInt i = 0; list && i < list->n; ++i) tell_age(list->child[i], &c->loads[n++].amplitude);
   }
 }
 
@@ -400,6 +408,7 @@ static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag 
   for (PetscInt k = 0; k < whole->n_stages; ++k) {
     check_units(whole, k, diag);
     check_windows(whole, k, diag);
+    stage_advise_repeated(whole, k, diag);
   }
   PetscFunctionReturn(0);
 }

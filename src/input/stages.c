@@ -47,12 +47,24 @@ static void set_stage(YamlNode *node, PetscInt stage)
   for (PetscInt i = 0; i < node->n; ++i) set_stage(node->child[i], stage);
 }
 
+/* The stage has said it in the same words, here. */
+static void set_repeated(YamlNode *node, const YamlNode *words)
+{
+  node->repeated = PETSC_TRUE;
+  node->place = words->place;
+  node->key_place = words->key_place;
+  for (PetscInt i = 0; i < node->n && i < words->n; ++i) set_repeated(node->child[i], words->child[i]);
+}
+
 /* Entries of a list that stood in the one before are as old as they were there. */
 static void keep_age(const YamlNode *before, YamlNode *list)
 {
   for (PetscInt i = 0; i < list->n && before->kind == YAML_SEQUENCE; ++i)
     for (PetscInt k = 0; k < before->n; ++k)
-      if (yaml_equal(before->child[k], list->child[i])) set_stage(list->child[i], before->child[k]->stage);
+      if (yaml_equal(before->child[k], list->child[i])) {
+        set_stage(list->child[i], before->child[k]->stage);
+        set_repeated(list->child[i], list->child[i]);
+      }
 }
 
 static PetscErrorCode Replace(const Layer *l, YamlNode *node, const YamlNode *by)
@@ -226,7 +238,7 @@ static PetscErrorCode LayEntries(const Layer *l, YamlNode *list, const YamlNode 
     else if (!was) {
       PetscCall(Clone(l, entry, l->stage, &copy));
       PetscCall(YamlNodeAppend(list, copy));
-    } else if (yaml_equal(was, entry)) continue;
+    } else if (yaml_equal(was, entry)) set_repeated(was, entry);
     else if (by_keys || says_presence_only(entry)) {
       if (by_keys && l->stage > 0 && !is_absent(was) && !is_absent(entry)) check_begun(l, was, entry);
       PetscCall(LayOnEntry(l, was, entry));
@@ -248,8 +260,8 @@ static PetscErrorCode Lay(const Layer *l, YamlNode *under, const YamlNode *over)
   const PetscBool mappings = under->kind == YAML_MAPPING && over->kind == YAML_MAPPING;
 
   PetscFunctionBeginUser;
-  if (yaml_equal(under, over)) PetscFunctionReturn(0);
-  if (mappings && !stands_alone(over)) PetscCall(LayKeys(l, under, over, NULL));
+  if (yaml_equal(under, over)) set_repeated(under, over);
+  else if (mappings && !stands_alone(over)) PetscCall(LayKeys(l, under, over, NULL));
   else if (goes_by_entries(under, over)) PetscCall(LayEntries(l, under, over));
   else PetscCall(Replace(l, under, over));
   PetscFunctionReturn(0);

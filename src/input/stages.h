@@ -15,3 +15,5 @@
 PetscErrorCode StageLay(YamlDocument *document, PetscInt k, Diag *diag);
 /* What a stage changes of the case before it: those keys that differ, resolved, in full. */
 PetscErrorCode StageText(const Case *before, const Case *stage, char **text);
+/* When all stages are read: warn of tables over time that stage k repeats word for word, and which are over by then. */
+void stage_advise_repeated(const Case *whole, PetscInt k, Diag *diag);

@@ -516,4 +516,30 @@ for method in mpm fem; do
   awk -F, 'NR > 2 && ($3 - p - 0.01 * ($4 - 5000)) ^ 2 > 1e-12 { exit 1 } { p = $3 }' caught/history.csv || fail "$name: $(cat caught/history.csv)"
 done
 
+# A stage that repeats a table word for word goes on with its clock, and is told; with a further point it begins anew, and
+# so it does where the case is read as it was written out.
+cat >blows.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: dynamic, end: 0.3, step: 0.01}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 1}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+measures: {p: {momentum: y}}
+output: {every: end}
+stages:
+  - {name: one, loads: {gravity: [0, -10], gravity_amplitude: [[0, 0], [0.1, 1], [0.2, 0]]}}
+  - {name: two, loads: {gravity: [0, -10], gravity_amplitude: [[0, 0], [0.1, 1], [0.2, 0]]}}
+END
+expect "a blow that is repeated" 0 "$talus" check blows.yaml
+says err.txt "it is word for word that of stage 'one', whose clock goes on: it is over when this stage begins"
+says err.txt "by a further point, [0.3, 0]"
+sed '$s/, \[0.2, 0\]/&, [0.3, 0]/' blows.yaml >two.yaml
+cp two.yaml blows.yaml
+for run in first again; do
+  expect "two blows, $run" 0 "$talus" run blows.yaml --out $run --force --quiet
+  lacks err.txt "word for word"
+  awk -F, 'END { exit ($NF + 2000) ^ 2 > 1e-6 }' $run/history.csv || fail "$name: $(tail -n 1 $run/history.csv)"
+  cp first/case.yaml blows.yaml
+done
 finish

@@ -6,8 +6,9 @@
 typedef struct {
   PetscInt n;
   PetscReal *time, *value;
-  PetscInt since;   /* stage of the case whose words brought it, */
-  PetscReal origin; /* when that began, s: times count from there */
+  PetscInt since;     /* stage of the case whose words brought it, */
+  PetscBool repeated; /* by a later one, whose case this is, in the same words */
+  PetscReal origin;   /* when that began, s: times count from there */
 } Amplitude;
 
 /* Value at time t; `fallback` if the amplitude was not given. */

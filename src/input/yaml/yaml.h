@@ -23,8 +23,9 @@ typedef struct YamlNode {
   char *key;       /* if it stands in a mapping */
   YamlPlace place; /* of the value; line 0: not from the file */
   YamlPlace key_place;
-  PetscInt argument; /* 1 + index of the --set that brought it, 0: from the file */
-  PetscInt stage;    /* of a case with stages: the one whose words it is among */
+  PetscInt argument;  /* 1 + index of the --set that brought it, 0: from the file */
+  PetscInt stage;     /* of a case with stages: the one whose words it is among */
+  PetscBool repeated; /* of the tree of a stage: that says it again, in the same words */
   PetscInt n, capacity;
   struct YamlNode **child;
   Names *keys; /* of a mapping with many: which child has which; else NULL */

@@ -62,7 +62,8 @@ const SchemaTable schema_stage = {
   .name = "stage",
   .help =
     "What a stage changes: all else is as in the stage before, of the first as at the top of the file. Times of "
-    "what it brings count from its start; what it repeats word for word goes on.",
+    "what it brings count from its start; what it repeats word for word goes on, and begins anew "
+    "with a further point of its amplitude.",
   .entries = stage_entries,
   .size = sizeof(StageSpec),
   .write_open = WriteChanges};
