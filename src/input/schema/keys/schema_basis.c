@@ -29,10 +29,11 @@ static const SchemaWord essential_words[] = {
 };
 
 /* What both bases of clouds have. */
-#define CLOUD                                                                                                        \
+#define CLOUD(usual)                                                                                                 \
   KEY("cloud", WORD, NULL, "which nodes carry a point", .words = cloud_words, .fallback = "adaptive",                \
       AT(BasisSpec, choice)),                                                                                        \
-    KEY("radius", NUMBER, NULL, "of a cloud, over the cell size", .fallback = "2", ABOVE(0), AT(BasisSpec, radius)), \
+    KEY("radius", NUMBER, NULL, "of a cloud, over the cell size" usual, .fallback = "2", ABOVE(0),                   \
+        AT(BasisSpec, radius)),                                                                                      \
     KEY("max_radius", NUMBER, NULL, "to which it may grow, over the cell size", .fallback = "3.5", ABOVE(0),         \
         AT(BasisSpec, max_radius)),                                                                                  \
     KEY("condition", NUMBER, NULL, "of a basis that needs no more nodes", .fallback = "50", ABOVE(1),                \
@@ -46,22 +47,40 @@ static const SchemaWord essential_words[] = {
       AT(BasisSpec, essential))
 
 static const SchemaEntry mls_entries[] = {
-  CLOUD,
-  KEY("effective_radius", NUMBER, NULL, "dilation of the weight function, over the cell size", .fallback = "1",
-      ABOVE(0), AT(BasisSpec, effective_radius)),
+  CLOUD("; 3 for order quadratic"),
+  KEY("effective_radius", NUMBER, NULL,
+      "dilation of the weight function, over the cell size; 1 for order quadratic, 2 for weight cubic-spline",
+      .fallback = "0.8", ABOVE(0), AT(BasisSpec, effective_radius)),
   KEY("order", WORD, NULL, "polynomials that are reproduced", .words = order_words, .fallback = "linear",
       AT(BasisSpec, order)),
   KEY("weight", WORD, NULL, "weight function", .words = weight_words, .fallback = "gaussian", AT(BasisSpec, weight)),
   ESSENTIAL,
   {.key = NULL},
 };
+
+/* Weights that the radius cuts while they still count are integrated badly by the points of a cell; more functions want
+ * more nodes (docs/theory.md, "Meshfree bases"). */
+static PetscErrorCode CheckMls(SchemaReader *r, const YamlNode *mapping, void *target)
+{
+  BasisSpec *basis = target;
+
+  PetscFunctionBeginUser;
+  (void)r;
+  if (!yaml_find(mapping, "radius") && basis->order == ORDER_QUADRATIC) basis->radius = 3;
+  if (!yaml_find(mapping, "effective_radius")) {
+    if (basis->order == ORDER_QUADRATIC) basis->effective_radius = 1;
+    if (basis->weight == WEIGHT_CUBIC_SPLINE) basis->effective_radius = 2;
+  }
+  PetscFunctionReturn(0);
+}
+
 const SchemaTable schema_keys_mls = {
-  .name = "mls", .help = "Moving least squares.", .entries = mls_entries, .size = sizeof(BasisSpec)};
+  .name = "mls", .help = "Moving least squares.", .entries = mls_entries, .size = sizeof(BasisSpec), .check = CheckMls};
 
 static const SchemaEntry lme_entries[] = {
   KEY("gamma", NUMBER, NULL, "locality: 0.6 spreads wide, from 4 on nearly linear finite elements", .fallback = "1.8",
       ABOVE(0), AT(BasisSpec, gamma)),
-  CLOUD,
+  CLOUD(""),
   ESSENTIAL,
   {.key = NULL},
 };
