@@ -21,6 +21,7 @@ typedef struct {
   const Grid *grid;
   PetscBool hoop;          /* see Kinematics */
   const Neighbours *nodes; /* of clouds: the nodes by their places, of each velocity field */
+  PetscBool follows;       /* of clouds: do they follow the stretch of the material? */
   /* do the points stand on the hull of all nodes, as nodes themselves and carriers of loads do? */
   PetscBool on_hull;
   /* of a box, for a basis that ends at held nodes: per node, bit d where along axis d what the boundary holds

@@ -44,11 +44,12 @@ typedef struct {
   PetscReal X[3 * CLOUD_MAX_NODES];
 } Surroundings;
 
-static void look_around(const Neighbours *nodes, const PetscReal *x, PetscReal reach, Surroundings *s)
+static void look_around(const Neighbours *nodes, const NeighboursMap *map, const PetscReal *x, PetscReal reach,
+                        Surroundings *s)
 {
   const PetscInt dim = nodes->dim;
   PetscReal distance2[CLOUD_MAX_NODES];
-  s->n = neighbours_within(nodes, x, reach, CLOUD_MAX_NODES, s->place, distance2);
+  s->n = neighbours_mapped(nodes, map, x, reach, CLOUD_MAX_NODES, s->place, distance2);
   for (PetscInt i = 0; i < s->n; ++i)
     for (PetscInt d = 0; d < dim; ++d) s->X[i * dim + d] = nodes->at[s->place[i] * dim + d];
 }
@@ -60,21 +61,51 @@ static PetscBool radius_is_enough(const CloudSupport *s)
   return s->rule == SUPPORT_FIXED || s->gap <= 0 || s->radius <= s->gap;
 }
 
+/* vectors <- vectors map */
+static void apply_map(PetscInt dim, const NeighboursMap *map, PetscInt n, PetscReal *vectors)
+{
+  for (PetscInt i = 0; i < n; ++i) {
+    PetscReal v[3] = {0, 0, 0};
+    for (PetscInt k = 0; k < dim; ++k)
+      for (PetscInt l = 0; l < dim; ++l) v[k] += map->map[k * dim + l] * vectors[i * dim + l];
+    for (PetscInt k = 0; k < dim; ++k) vectors[i * dim + k] = v[k];
+  }
+}
+
+/* The cloud of a point among the nodes around it, and its functions. In material that is drawn out all of it is done in
+ * the mapped space, and gradients come back by the map. Links then need no F: the map has taken its place. */
+static SupportReport choose_cloud(const CloudSupport *support, const CloudRule *rule, const NeighboursMap *map,
+                                  const PetscReal *F, const PetscReal *x, PetscInt dim, Surroundings *s, int *chosen,
+                                  PetscReal *N, PetscReal *dN)
+{
+  PetscReal metric[9], y[3] = {0, 0, 0};
+  const PetscReal *m = F && !map && metric_of(dim, F, metric) ? metric : NULL;
+  for (PetscInt d = 0; d < dim; ++d) y[d] = x[d];
+  if (map) {
+    apply_map(dim, map, s->n, s->X);
+    apply_map(dim, map, 1, y);
+  }
+  const SupportReport report =
+    cloud_support(support, &rule->basis, (int)dim, (int)s->n, s->X, rule->h, m, y, chosen, N, dN, NULL);
+  if (map) apply_map(dim, map, report.n, dN);
+  return report;
+}
+
 PetscInt cloud_at(const Neighbours *nodes, const CloudRule *rule, const PetscReal *x, const PetscReal *F,
                   PetscInt *node, PetscReal *N, PetscReal *dN, CloudTally *tally)
 {
   const PetscInt dim = nodes->dim;
   const CloudSupport *support = &rule->support;
-  PetscReal metric[9];
   int chosen[CLOUD_MAX_NODES];
+  NeighboursMap room;
   Surroundings s;
   SupportReport report = {.level = SUPPORT_EMPTY};
 
-  const PetscReal *m = F && metric_of(dim, F, metric) ? metric : NULL;
+  const NeighboursMap *map = F && rule->follows ? cloud_stretch(dim, F, &room) : NULL;
   /* few points need to look beyond the radius */
   for (int far = radius_is_enough(support) ? 0 : 1; far < 2; ++far) {
-    look_around(nodes, x, (far ? support->max_radius : support->radius) * rule->h, &s);
-    report = cloud_support(support, &rule->basis, (int)dim, (int)s.n, s.X, rule->h, m, x, chosen, N, dN, NULL);
+    look_around(nodes, map, x, (far ? support->max_radius : support->radius) * rule->h, &s);
+    report = choose_cloud(support, rule, map, F, x, dim, &s, chosen, N, dN);
     if (report.level == SUPPORT_NOMINAL) break;
   }
   for (int i = 0; i < report.n; ++i) node[i] = s.place[chosen[i]];

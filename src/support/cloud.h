@@ -7,8 +7,16 @@
 typedef struct {
   CloudBasis basis;
   CloudSupport support;
-  PetscReal h; /* m: unit of their lengths */
+  PetscReal h;       /* m: unit of their lengths */
+  PetscBool follows; /* the stretch of the material? */
 } CloudRule;
+
+/* How clouds follow a point's stretch: along a principal direction of its F in which the material is drawn out by more
+ * than a fifth, lengths count by as much less, so that the cloud keeps its nodes (docs/theory.md, "Meshfree bases").
+ * NULL where there is none; else `room`, filled. */
+const NeighboursMap *cloud_stretch(PetscInt dim, const PetscReal *F, NeighboursMap *room);
+/* That of point p; NULL, too, where points have no F, or clouds do not follow. */
+const NeighboursMap *cloud_stretch_of(PetscBool follows, const Points *points, PetscInt p, NeighboursMap *room);
 
 /* A cloud for each point, as a group of its own; nodes are numbered as in `nodes`, one for each velocity
  * field. Points without a node near have an empty group. Of the points their places count, their field, and F if they

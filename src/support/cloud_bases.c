@@ -8,7 +8,7 @@ static CloudRule cloud_rule(const BasisInput *in, const CloudSupport *usual)
 {
   static const SupportRule rule[] = {SUPPORT_ADAPTIVE, SUPPORT_NEAREST, SUPPORT_FIXED};
   const BasisSpec *b = in->spec;
-  CloudRule r = {.support = *usual, .h = in->grid->cloud->spacing};
+  CloudRule r = {.support = *usual, .h = in->grid->cloud->spacing, .follows = in->follows};
   r.support.rule = rule[b->choice];
   r.support.radius = b->radius;
   r.support.max_radius = PetscMax(b->max_radius, b->radius);
@@ -47,16 +47,13 @@ static PetscErrorCode LmeSupport(const BasisInput *in, const Points *points, Sup
 }
 
 /* How far the couplings of a point must reach: clouds that had to grow get their share, too. */
-static PetscReal wide_radius(const BasisInput *in, const BasisSites *sites, PetscInt p)
+static PetscReal wide_radius(const BasisInput *in, const BasisSites *sites, const NeighboursMap *map, PetscInt p)
 {
   const PetscInt dim = in->grid->dim;
   const PetscReal *x = point_real(sites->points, POINT_X, p);
   PetscReal farthest2 = PetscSqr(in->spec->radius * in->grid->cloud->spacing);
-  for (PetscInt i = sites->now->node_start[p]; i < sites->now->node_start[p + 1]; ++i) {
-    PetscReal d2 = 0;
-    for (PetscInt d = 0; d < dim; ++d) d2 += PetscSqr(in->grid->x[sites->now->node[i] * dim + d] - x[d]);
-    farthest2 = PetscMax(farthest2, d2);
-  }
+  for (PetscInt i = sites->now->node_start[p]; i < sites->now->node_start[p + 1]; ++i)
+    farthest2 = PetscMax(farthest2, neighbours_square(dim, map, in->grid->x + sites->now->node[i] * dim, x));
   return sites->skin * PetscSqrtReal(farthest2);
 }
 
@@ -70,8 +67,11 @@ static PetscErrorCode CloudCouplings(const BasisInput *in, const BasisSites *sit
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < now->n_groups; ++p) {
     const PetscInt nn = support_nodes(now, p);
-    PetscInt n = neighbours_within(in->nodes + point_field(sites->points, p), point_real(sites->points, POINT_X, p),
-                                   wide_radius(in, sites, p), CLOUD_MAX_NODES, node, distance2);
+    NeighboursMap room;
+    const NeighboursMap *map = cloud_stretch_of(in->follows, sites->points, p, &room);
+    PetscInt n =
+      neighbours_mapped(in->nodes + point_field(sites->points, p), map, point_real(sites->points, POINT_X, p),
+                        wide_radius(in, sites, map, p), CLOUD_MAX_NODES, node, distance2);
     PetscCall(PetscArraycpy(node + n, now->node + now->node_start[p], nn));
     n += nn;
     PetscCall(PetscSortRemoveDupsInt(&n, node));

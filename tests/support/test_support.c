@@ -139,10 +139,77 @@ static void clouds_turn_with_the_material(void **state)
   CHECK(n[0][0] != n[0][1]);
 }
 
+/* Clouds that follow the material: of a lattice that is drawn out and turned they are those of the lattice with
+ * spacings of 1.2 along the pull, whatever its stretch up to three, with gradients by the map. */
+static void clouds_follow_the_stretch(void **state)
+{
+  CloudRule rule = {
+    .basis = {.kind = CLOUD_LME, .gamma = 1.8}, .support = support_default_lme, .h = 1, .follows = PETSC_TRUE};
+  const PetscReal c = 0.6, s = 0.8, stretch[] = {1.2, 2, 2.9};
+  PetscReal N[3][CLOUD_MAX_NODES], dN[3][2 * CLOUD_MAX_NODES];
+  PetscInt n[3], node[3][CLOUD_MAX_NODES];
+  (void)state;
+  for (int k = 0; k < 3; ++k) {
+    const PetscReal F[9] = {c * stretch[k], -s, 0, s * stretch[k], c, 0, 0, 0, 3}, x = 0.3 * stretch[k], y = 0.4;
+    PetscReal X[2 * 121];
+    CloudTally tally = {{0}, 0};
+    Neighbours nodes;
+    for (int i = 0; i < 121; ++i) {
+      X[2 * i] = c * stretch[k] * (i % 11 - 5) - s * (i / 11 - 5);
+      X[2 * i + 1] = s * stretch[k] * (i % 11 - 5) + c * (i / 11 - 5);
+    }
+    CALL(NeighboursCreate(2, 121, X, 0, NULL, NULL, 1, &nodes));
+    const PetscReal at[2] = {c * x - s * y, s * x + c * y};
+    n[k] = cloud_at(&nodes, &rule, at, F, node[k], N[k], dN[k], &tally);
+    CALL(NeighboursDestroy(&nodes));
+  }
+  for (int k = 1; k < 3; ++k) {
+    CHECK(n[k] == n[0] && n[0] > 8);
+    for (PetscInt i = 0; i < n[0]; ++i) {
+      const PetscReal *was = dN[0] + 2 * i, *is = dN[k] + 2 * i;
+      CHECK(node[k][i] == node[0][i]);
+      CHECK_CLOSE(N[k][i], N[0][i], 1e-12);
+      CHECK_CLOSE(stretch[k] * (c * is[0] + s * is[1]), 1.2 * (c * was[0] + s * was[1]), 1e-12);
+      CHECK_CLOSE(c * is[1] - s * is[0], c * was[1] - s * was[0], 1e-12);
+    }
+  }
+}
+
+/* Nodes near by distances of a map are those that one by one are near, nearest first. */
+static void neighbours_by_a_map(void **state)
+{
+  enum { MOST = 128 };
+  const NeighboursMap map = {.map = {0.7, -0.2, 0.1, -0.2, 0.8, 0.05, 0.1, 0.05, 0.9}, .longest = 2.5};
+  const PetscReal at[3] = {0.1, -0.2, 0.3}, radius[] = {1.4, 2.6};
+  PetscReal X[3 * 1331], d2[MOST];
+  PetscInt item[MOST];
+  Neighbours nodes;
+  (void)state;
+  for (int i = 0; i < 1331; ++i) {
+    X[3 * i] = i % 11 - 5;
+    X[3 * i + 1] = i / 11 % 11 - 5;
+    X[3 * i + 2] = i / 121 - 5;
+  }
+  CALL(NeighboursCreate(3, 1331, X, 0, NULL, NULL, 1.5, &nodes));
+  for (int k = 0; k < 2; ++k) {
+    PetscInt near = 0;
+    const PetscInt n = neighbours_mapped(&nodes, &map, at, radius[k], MOST, item, d2);
+    for (int i = 0; i < 1331; ++i) near += neighbours_square(3, &map, X + 3 * i, at) < radius[k] * radius[k];
+    CHECK(n == PetscMin(near, MOST) && n > 8);
+    for (PetscInt i = 0; i < n; ++i) {
+      CHECK_CLOSE(d2[i], neighbours_square(3, &map, X + 3 * item[i], at), 1e-13);
+      CHECK(i == 0 || d2[i] >= d2[i - 1]);
+    }
+  }
+  CALL(NeighboursDestroy(&nodes));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(clouds_turn_with_the_material),
+    cmocka_unit_test(clouds_follow_the_stretch),
+    cmocka_unit_test(neighbours_by_a_map),
     cmocka_unit_test(every_cell_type),
     cmocka_unit_test(arrays_are_reused),
   };

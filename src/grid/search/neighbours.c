@@ -127,24 +127,23 @@ static inline Range range_around(const Neighbours *b, const PetscReal *x, PetscR
   return r;
 }
 
-static inline PetscReal squared_distance(const PetscInt dim, const PetscReal *a, const PetscReal *b)
+/* How far in space a distance may be. */
+static inline PetscReal reach_of(const NeighboursMap *map, PetscReal radius)
 {
-  PetscReal d2 = 0;
-  for (PetscInt d = 0; d < dim; ++d) d2 += (a[d] - b[d]) * (a[d] - b[d]);
-  return d2;
+  return map ? map->longest * radius : radius;
 }
 
 /* One after the other into their places: for any number of them, and where distances are equal. */
-static PetscInt insert_all(const Neighbours *b, const PetscReal *x, PetscReal radius, PetscInt max, PetscInt *item,
-                           PetscReal *distance2)
+static PetscInt insert_all(const Neighbours *b, const NeighboursMap *map, const PetscReal *x, PetscReal radius,
+                           PetscInt max, PetscInt *item, PetscReal *distance2)
 {
-  const Range r = range_around(b, x, radius);
+  const Range r = range_around(b, x, reach_of(map, radius));
   PetscInt n = 0;
   for (PetscInt k = r.lo[2]; k <= r.hi[2]; ++k)
     for (PetscInt j = r.lo[1]; j <= r.hi[1]; ++j) {
       const PetscInt row = (k * b->counts[1] + j) * b->counts[0];
       for (PetscInt e = b->start[row + r.lo[0]]; e < b->start[row + r.hi[0] + 1]; ++e) {
-        const PetscReal d2 = squared_distance(b->dim, b->x + e * b->dim, x);
+        const PetscReal d2 = neighbours_square(b->dim, map, b->x + e * b->dim, x);
         if (d2 < radius * radius) n = insert(b, n, max, item, distance2, b->item[e], d2);
       }
     }
@@ -155,17 +154,18 @@ static PetscInt insert_all(const Neighbours *b, const PetscReal *x, PetscReal ra
 
 /* All of them as they come; -1 if there are more than FEW. Without a branch, since which are near
  * enough cannot be foretold. */
-static inline PetscInt collect(const PetscInt dim, const Neighbours *b, const PetscReal *x, PetscReal radius,
-                               PetscInt *item, PetscReal *distance2)
+static inline __attribute__((always_inline)) PetscInt collect(const PetscInt dim, const NeighboursMap *map,
+                                                              const Neighbours *b, const PetscReal *x, PetscReal radius,
+                                                              PetscInt *item, PetscReal *distance2)
 {
-  const Range r = range_around(b, x, radius);
+  const Range r = range_around(b, x, reach_of(map, radius));
   const PetscReal limit = radius * radius;
   PetscInt n = 0;
   for (PetscInt k = r.lo[2]; k <= r.hi[2]; ++k)
     for (PetscInt j = r.lo[1]; j <= r.hi[1]; ++j) {
       const PetscInt row = (k * b->counts[1] + j) * b->counts[0];
       for (PetscInt e = b->start[row + r.lo[0]]; e < b->start[row + r.hi[0] + 1]; ++e) {
-        const PetscReal d2 = squared_distance(dim, b->x + e * dim, x);
+        const PetscReal d2 = neighbours_square(dim, map, b->x + e * dim, x);
         item[n] = b->item[e];
         distance2[n] = d2;
         n += d2 < limit;
@@ -199,16 +199,35 @@ static inline PetscBool count_nearer(PetscInt n, PetscReal *distance2, PetscInt 
   return alone == n;
 }
 
-PetscInt neighbours_within(const Neighbours *b, const PetscReal *x, PetscReal radius, PetscInt max, PetscInt *item,
-                           PetscReal *distance2)
+/* In order, of those collected; all again where that is not to be had. */
+static inline PetscInt in_order(const Neighbours *b, const NeighboursMap *map, const PetscReal *x, PetscReal radius,
+                                PetscInt max, PetscInt n, const PetscInt *near, PetscReal *d2, PetscInt *item,
+                                PetscReal *distance2)
 {
-  PetscInt near[FEW + 1], place[FEW];
-  PetscReal d2[FEW + 1];
-  const PetscInt n = b->dim == 2 ? collect(2, b, x, radius, near, d2) : collect(3, b, x, radius, near, d2);
-  if (n < 0 || n > max || !count_nearer(n, d2, place)) return insert_all(b, x, radius, max, item, distance2);
+  PetscInt place[FEW];
+  if (n < 0 || n > max || !count_nearer(n, d2, place)) return insert_all(b, map, x, radius, max, item, distance2);
   for (PetscInt i = 0; i < n; ++i) {
     item[place[i]] = near[i];
     distance2[place[i]] = d2[i];
   }
   return n;
+}
+
+PetscInt neighbours_within(const Neighbours *b, const PetscReal *x, PetscReal radius, PetscInt max, PetscInt *item,
+                           PetscReal *distance2)
+{
+  PetscInt near[FEW + 1];
+  PetscReal d2[FEW + 1];
+  const PetscInt n = b->dim == 2 ? collect(2, NULL, b, x, radius, near, d2) : collect(3, NULL, b, x, radius, near, d2);
+  return in_order(b, NULL, x, radius, max, n, near, d2, item, distance2);
+}
+
+PetscInt neighbours_mapped(const Neighbours *b, const NeighboursMap *map, const PetscReal *x, PetscReal radius,
+                           PetscInt max, PetscInt *item, PetscReal *distance2)
+{
+  PetscInt near[FEW + 1];
+  PetscReal d2[FEW + 1];
+  if (!map) return neighbours_within(b, x, radius, max, item, distance2);
+  const PetscInt n = b->dim == 2 ? collect(2, map, b, x, radius, near, d2) : collect(3, map, b, x, radius, near, d2);
+  return in_order(b, map, x, radius, max, n, near, d2, item, distance2);
 }

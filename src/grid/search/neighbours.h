@@ -17,7 +17,28 @@ PetscErrorCode NeighboursCreate(PetscInt dim, PetscInt n, const PetscReal *x, Pe
                                 const unsigned char *skip, PetscReal size, Neighbours *neighbours);
 PetscErrorCode NeighboursDestroy(Neighbours *neighbours);
 
+/* Distances in a space that is stretched: a vector d counts as |map d|, and no d is longer than `longest` |map d|. */
+typedef struct {
+  PetscReal map[9], longest; /* dim x dim, symmetric */
+} NeighboursMap;
+
+/* |a - b|^2 by the distances of a map; NULL: by those there are. */
+static inline PetscReal neighbours_square(const PetscInt dim, const NeighboursMap *map, const PetscReal *a,
+                                          const PetscReal *b)
+{
+  PetscReal d2 = 0;
+  for (PetscInt d = 0; d < dim; ++d) {
+    PetscReal off = map ? 0 : a[d] - b[d];
+    for (PetscInt k = 0; k < dim && map; ++k) off += map->map[d * dim + k] * (a[k] - b[k]);
+    d2 += off * off;
+  }
+  return d2;
+}
+
 /* Positions nearer to x than radius, nearest first, and no more than the nearest max of them: their
  * numbers and squared distances. Returns how many were written. */
 PetscInt neighbours_within(const Neighbours *neighbours, const PetscReal *x, PetscReal radius, PetscInt max,
                            PetscInt *item, PetscReal *distance2);
+/* The same by the distances of a map; NULL: by those there are. */
+PetscInt neighbours_mapped(const Neighbours *neighbours, const NeighboursMap *map, const PetscReal *x, PetscReal radius,
+                           PetscInt max, PetscInt *item, PetscReal *distance2);

@@ -1,5 +1,6 @@
 /* Phase a of gmm: which nodes each point has now, over all ranks. */
 #include "method/gmm/gmm.h"
+#include "support/cloud.h"
 
 #define SHARE 0.1 /* of a constrained node in the field at its place, at least */
 /* ghosts and couplings are kept for clouds so much wider, so that they serve several steps */
@@ -20,6 +21,13 @@ typedef struct {
 /* The radius aimed at, m. */
 static PetscReal radius_of(const Discretisation *s) { return s->c->basis.radius * s->grid->cloud->spacing; }
 
+/* What yields flows before its stress could make clouds uneven, and its F need not tell neighbours; the thesis's clouds
+ * stay as they are. */
+static PetscBool clouds_follow(const Discretisation *s)
+{
+  return (PetscBool)(s->c->basis.choice == CLOUD_CHOICE_ADAPTIVE && !materials_yield(s->c->n_materials, s->materials));
+}
+
 static void widen_box(PetscInt dim, PetscInt n, const PetscReal *x, PetscReal reach, PetscReal box[6])
 {
   for (PetscInt i = 0; i < n; ++i)
@@ -29,15 +37,26 @@ static void widen_box(PetscInt dim, PetscInt n, const PetscReal *x, PetscReal re
     }
 }
 
+/* Points in material that is drawn out look farther. */
+static void widen_for_points(PetscBool follows, const Points *points, PetscReal reach, PetscReal box[6])
+{
+  NeighboursMap room;
+  for (PetscInt p = 0; p < points->n; ++p) {
+    const NeighboursMap *map = cloud_stretch_of(follows, points, p, &room);
+    widen_box(points->dim, 1, point_real(points, POINT_X, p), (map ? map->longest : 1) * reach, box);
+  }
+}
+
 /* The box in which this rank's points and nodes look for nodes. */
 static void search_box(const Discretisation *s, const MeetingPlaces *meeting, PetscReal box[6])
 {
   const PetscInt dim = s->grid->dim;
   const PetscReal reach = SKIN * PetscMax(radius_of(s), s->c->basis.max_radius * s->grid->cloud->spacing);
+  const PetscBool follows = clouds_follow(s);
   for (int d = 0; d < 3; ++d) box[d] = PETSC_MAX_REAL, box[3 + d] = -PETSC_MAX_REAL;
-  widen_box(dim, s->points->n, s->points->real[POINT_X], reach, box);
-  widen_box(dim, s->tracers->n, s->tracers->real[POINT_X], reach, box);
-  widen_box(dim, s->loads->carriers->n, s->loads->carriers->real[POINT_X], reach, box);
+  widen_for_points(follows, s->points, reach, box);
+  widen_for_points(follows, s->tracers, reach, box);
+  widen_for_points(follows, s->loads->carriers, reach, box);
   widen_box(dim, s->grid->n_owned, s->grid->x, reach, box);
   widen_box(dim, meeting->n, meeting->x, SKIN * meeting_reach(s), box);
 }
@@ -131,13 +150,16 @@ static PetscErrorCode Relayout(Discretisation *s, Search *search)
 {
   const PetscInt dim = s->grid->dim, n_owned = s->grid->n_owned;
   const PetscReal radius = SKIN * radius_of(s);
+  const PetscBool follows = clouds_follow(s);
   PetscInt near[CLOUD_MAX_NODES];
   PetscReal distance2[CLOUD_MAX_NODES];
+  NeighboursMap room;
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < s->points->n; ++p) {
-    const PetscInt n = neighbours_within(search->nodes + point_field(s->points, p), s->points->real[POINT_X] + p * dim,
-                                         radius, CLOUD_MAX_NODES, near, distance2);
+    const PetscInt n =
+      neighbours_mapped(search->nodes + point_field(s->points, p), cloud_stretch_of(follows, s->points, p, &room),
+                        s->points->real[POINT_X] + p * dim, radius, CLOUD_MAX_NODES, near, distance2);
     mark_used(s, search, n, near);
   }
   PetscCall(MeetingPlacesUse(&search->meeting, s, SKIN * meeting_reach(s), &search->remote, search->use));
@@ -211,7 +233,8 @@ static PetscErrorCode GatherNodes(Discretisation *s, const Search *search)
 {
   const Grid *grid = s->grid;
   const Support *w = gmm_of(s)->nodes;
-  const BasisInput basis = {.spec = &s->c->basis, .grid = grid, .nodes = search->nodes, .on_hull = PETSC_TRUE};
+  const BasisInput basis = {
+    .spec = &s->c->basis, .grid = grid, .nodes = search->nodes, .follows = clouds_follow(s), .on_hull = PETSC_TRUE};
   Points places;
 
   PetscFunctionBeginUser;
@@ -274,7 +297,7 @@ PetscErrorCode GmmGather(Discretisation *s)
 {
   Gmm *g = gmm_of(s);
   Search search;
-  BasisInput basis = {.spec = &s->c->basis, .grid = s->grid};
+  BasisInput basis = {.spec = &s->c->basis, .grid = s->grid, .follows = clouds_follow(s)};
   PetscBool missing = PETSC_FALSE, any;
 
   PetscFunctionBeginUser;
@@ -335,7 +358,7 @@ PetscErrorCode GmmCouplings(const Discretisation *s, NodeGroups *groups)
 
   PetscFunctionBeginUser;
   PetscCall(NodesByField(grid, grid->n_nodes, &none, SKIN * radius_of(s), &nodes));
-  const BasisInput basis = {.spec = &s->c->basis, .grid = grid, .nodes = nodes};
+  const BasisInput basis = {.spec = &s->c->basis, .grid = grid, .nodes = nodes, .follows = clouds_follow(s)};
   PetscCall(s->basis->couplings(&basis, &sites, groups));
   PetscCall(CoupleConstraints(s, &basis, groups));
   PetscCall(NodesByFieldDestroy(grid, &nodes));

@@ -5,6 +5,7 @@
 #include "method/transfer/transfer.h"
 #include "model/measure/measure.h"
 #include "run/report/sheared.h"
+#include "run/report/stretched.h"
 #include "run/report/unstable.h"
 #include "run/report/sunk.h"
 #include "run/report/through.h"
@@ -424,6 +425,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   PetscCall(WarnOfCrowd(m, diag));
   PetscCall(WarnOfMovedLoads(m, diag));
   PetscCall(WarnOfShear(m, diag));
+  PetscCall(WarnOfStretch(m, diag));
   warn_of_sunk(m, PETSC_FALSE, diag);
   warn_of_no_limit(m, diag);
   warn_of_unstable(m, diag);
