@@ -25,12 +25,19 @@ typedef struct {
   PetscReal start; /* kinetic and elastic at the start, J */
 } Energies;
 
+/* Of a mean over steps: that since the last row of the history, over how long, s, and 1 once a row has it. */
+typedef struct {
+  PetscReal mean, time, given;
+} RowMean;
+#define ROW_MEAN 3
+
 /* What a measure remembers from step to step. */
 #define MEASURE_KEPT 2
 typedef struct {
   PetscReal kept[MEASURE_KEPT]; /* what it keeps for itself */
-  PetscReal ended;              /* when the material left its tracer behind, s; 0: it did not */
-  PetscReal where[3];           /* the tracer was then, m */
+  RowMean row;
+  PetscReal ended;    /* when the material left its tracer behind, s; 0: it did not */
+  PetscReal where[3]; /* the tracer was then, m */
   /* more that it keeps, as many numbers as it likes: see MemoryAppend */
   PetscInt n_list, capacity;
   PetscReal *list;
@@ -277,6 +284,10 @@ PetscErrorCode ModelTryFactor(Model *model, PetscReal factor, StepReport *report
 PetscErrorCode MovingHeight(const Model *model, PetscReal *height);
 /* Collective. Value of one measure of the case now. */
 PetscErrorCode ModelMeasure(Model *model, const MeasureSpec *measure, PetscInt index, PetscReal *value);
+/* Collective. The same for a row of the history (measure/rows.c): of what is a mean over a step that since the last
+ * row. Whoever has written one says so. */
+PetscErrorCode ModelMeasureRow(Model *model, const MeasureSpec *measure, PetscInt index, PetscReal *value);
+void model_row_given(Model *model);
 /* Numbers behind the list that a measure keeps. */
 PetscErrorCode MemoryAppend(MeasureMemory *memory, PetscInt n, const PetscReal *numbers);
 const char *measure_unit(const MeasureSpec *measure);

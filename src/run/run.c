@@ -39,7 +39,7 @@ static PetscErrorCode Measure(Run *r)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < r->c->n_measures; ++k)
-    PetscCall(ModelMeasure(r->model, &r->c->measures[k], k, &r->values[k]));
+    PetscCall(ModelMeasureRow(r->model, &r->c->measures[k], k, &r->values[k]));
   PetscFunctionReturn(0);
 }
 
@@ -48,6 +48,7 @@ PetscErrorCode RunWriteRow(Run *r)
   PetscFunctionBeginUser;
   if (r->row_step == r->model->step) PetscFunctionReturn(0);
   PetscCall(Measure(r));
+  model_row_given(r->model);
   r->row_step = r->model->step;
   run_fill_row(r);
   PetscCall(RunWritten(r, HistoryWrite(r->dir, r->model->time, r->model->step, r->row, r->there)));

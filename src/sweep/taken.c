@@ -46,19 +46,27 @@ const char *taken_unit(const Taken *taken, const char *measure, char unit[64])
   return unit;
 }
 
-/* A measure over the window, or as much of it as the history has: a line between rows, so that the window cuts both
- * ends where no row stands there. */
+/* A measure over the window, or as much of it as the history has: a line between rows, or steps of means, so that the
+ * window cuts both ends where no row stands there. */
 typedef struct {
   const History *history;
-  PetscInt column;
-  PetscInt first, last; /* rows in the window; first > last: none */
-  PetscReal from, to;   /* what of the window is in the history */
+  const TakenMeans *means;
+  PetscInt column, stage; /* stage: its column, -1 without stages */
+  PetscInt first, last;   /* rows in the window; first > last: none */
+  PetscReal from, to;     /* what of the window is in the history */
 } Span;
 
 static PetscReal time_of(const Span *s, PetscInt i) { return s->history->values[i * s->history->n_columns]; }
 static PetscReal value_of(const Span *s, PetscInt i)
 {
   return s->history->values[i * s->history->n_columns + s->column];
+}
+
+/* Is the value of a row the mean since the row before? */
+static PetscBool is_mean(const Span *s, PetscInt row)
+{
+  const PetscReal stage = s->stage < 0 ? 1 : s->history->values[row * s->history->n_columns + s->stage];
+  return (PetscBool)(stage >= 1 && stage <= (PetscReal)s->means->n && s->means->is[(PetscInt)stage - 1]);
 }
 
 /* times are sums of steps */
@@ -68,9 +76,13 @@ static PetscReal air_of(const Taken *taken)
 }
 
 /* Ends within air of a row are that row's. */
-static Span span_of(const Taken *taken, const History *history)
+static Span span_of(const Taken *taken, const TakenMeans *means, const History *history)
 {
-  Span s = {.history = history, .column = history_column(history, taken->measure), .last = history->n_rows - 1};
+  Span s = {.history = history,
+            .means = means,
+            .column = history_column(history, taken->measure),
+            .stage = history_column(history, "stage"),
+            .last = history->n_rows - 1};
   const PetscReal air = air_of(taken), begin = time_of(&s, 0), end = time_of(&s, s.last);
   s.from = taken->has_window ? PetscMax(taken->from, begin) : begin;
   s.to = taken->has_window ? PetscMin(taken->to, end) : end;
@@ -91,15 +103,22 @@ static PetscInt entries(const Span *s)
 
 static PetscReal between(const Span *s, PetscInt row, PetscReal t)
 {
+  if (is_mean(s, row + 1)) return value_of(s, row + 1);
   const PetscReal t0 = time_of(s, row), y0 = value_of(s, row);
   return y0 + (t - t0) / (time_of(s, row + 1) - t0) * (value_of(s, row + 1) - y0);
 }
 
-static void entry(const Span *s, PetscInt i, PetscReal *t, PetscReal *y)
+/* That of entry i, or the one behind it. */
+static PetscInt row_of(const Span *s, PetscInt i)
 {
   const PetscBool cut = (PetscBool)(s->first > s->last || s->from < time_of(s, s->first));
-  const PetscInt row = s->first + i - cut;
-  if (i == 0 && cut) *t = s->from, *y = between(s, s->first - 1, s->from);
+  return s->first + i - cut;
+}
+
+static void entry(const Span *s, PetscInt i, PetscReal *t, PetscReal *y)
+{
+  const PetscInt row = row_of(s, i);
+  if (row < s->first) *t = s->from, *y = between(s, s->first - 1, s->from);
   else if (row > s->last) *t = s->to, *y = between(s, s->last, s->to);
   else *t = time_of(s, row), *y = value_of(s, row);
 }
@@ -111,7 +130,7 @@ static PetscReal mean_of(const Span *s)
   if (!(s->to > s->from)) return y;
   for (PetscInt i = 1; i < entries(s); ++i, t = next_t, y = next_y) {
     entry(s, i, &next_t, &next_y);
-    area += 0.5 * (next_t - t) * (y + next_y);
+    area += (next_t - t) * (is_mean(s, row_of(s, i)) ? value_of(s, row_of(s, i)) : 0.5 * (y + next_y));
   }
   return area / (s->to - s->from);
 }
@@ -176,7 +195,7 @@ static void tell_missing(const Taken *taken, const Span *s, char why[TAKEN_WHY])
   }
 }
 
-PetscReal taken_value(const Taken *taken, const History *history, char why[TAKEN_WHY])
+PetscReal taken_value(const Taken *taken, const TakenMeans *means, const History *history, char why[TAKEN_WHY])
 {
   const PetscReal begin = history->n_rows ? history->values[0] : 0, air = air_of(taken),
                   end = history->n_rows ? history->values[(history->n_rows - 1) * history->n_columns] : 0;
@@ -191,7 +210,7 @@ PetscReal taken_value(const Taken *taken, const History *history, char why[TAKEN
                    (double)taken->from, (double)taken->to, (double)begin, (double)end);
     return NAN;
   }
-  const Span s = span_of(taken, history);
+  const Span s = span_of(taken, means, history);
   const PetscReal value = take_from(taken, &s);
   if (PetscIsNanReal(value)) tell_missing(taken, &s, why);
   else if (beyond)

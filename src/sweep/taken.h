@@ -33,9 +33,15 @@ const char *taken_name(const Taken *taken, char name[128]);
 const char *taken_name_among(const Taken *taken, PetscInt n, const Taken *others, char name[128]);
 /* Its unit, from that of the measure. Returns buffer. */
 const char *taken_unit(const Taken *taken, const char *measure, char unit[64]);
+/* In which stages (one: the case itself) a measure is a mean over steps: a row of it is that since the row before. */
+typedef struct {
+  PetscInt n;
+  const PetscBool *is;
+} TakenMeans;
+
 #define TAKEN_WHY 192
-/* Between rows a measure goes along a line, which the ends of a window cut: the mean over time (trapezia), largest,
- * smallest and last value are those of the lines; the slope (per second) is by least squares over the rows, two at
- * least. NaN where the history has no such number, and why; of a window that reaches beyond the history what is in it,
- * and that it does. why: "" else. */
-PetscReal taken_value(const Taken *taken, const History *history, char why[TAKEN_WHY]);
+/* Between rows a measure goes along a line, but one that is a mean has a row's value all the way to that row. The ends
+ * of a window cut these lines: the mean over time, largest, smallest and last value are theirs; the slope (per second)
+ * is by least squares over the rows, two at least. NaN where the history has no such number, and why; of a window that
+ * reaches beyond the history what is in it, and that it does. why: "" else. */
+PetscReal taken_value(const Taken *taken, const TakenMeans *means, const History *history, char why[TAKEN_WHY]);

@@ -140,4 +140,51 @@ for steps in 3 10 49; do
   expect "the end of $steps steps" 0 "$talus" run peak.yaml --out equal --force --quiet --set materials.m.cohesion=1e9 --set analysis.end=1 --set analysis.steps=$steps --set output.every=2
   [ "$(tail -n 1 equal/history.csv | cut -d, -f1)" = 1 ] || fail "$name: $(tail -n 1 equal/history.csv)"
 done
+# What is a mean over a step is that since the row before where rows are few: a row times the time since then is the impulse,
+# as that of all steps is, and a sweep's mean of it is that of the run
+bounce() {
+  cat <<END
+kinematics: plane-strain
+method: mpm
+analysis: {type: $1, end: 0.11, step: 2e-3}
+grid: {box: {min: [0, 0], max: [2, 2]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: m, velocity: [0, -2]}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{name: side, on: {x: 0}, fix: [x]}]
+walls: [{name: floor, shape: {half-space: {point: [0, -0.02], normal: [0, 1]}}}]
+measures:
+  f: {wall_force: y, of: {wall: floor}}
+  side: {reaction: x, of: {boundary: side}}
+  both: {formula: 2 * f - side}
+  low: {extent: {min: y}}
+  mean: {formula: 2 * f - side, mean: {window: [0, 0.11]}}
+END
+}
+impulse() { awk -F, -v k="$2" 'NR > 2 {sum += ($1 - t) * $k} {t = $1} END {printf "%.9g\n", sum}' "$1/history.csv"; }
+few_rows() {
+  expect "$1, rows $2, on $ranks" 0 on_ranks $ranks "$talus" run bounce.yaml --out few --force --quiet --set "output.history=$2" --set checkpoint.steps=5 --set checkpoint.keep=99
+  for column in 3 4 5; do
+    awk -v a="$(impulse all $column)" -v b="$(impulse few $column)" 'BEGIN {d = a - b; exit !(a * a > 1 && d * d < 1e-14 * a * a)}' ||
+      fail "$name: column $column has $(impulse few $column), every step $(impulse all $column)"
+  done
+  [ "$(tail -n 1 few/history.csv | cut -d, -f6)" = "$(tail -n 1 all/history.csv | cut -d, -f6)" ] || fail "$name: what is no mean"
+  rm -rf cut && cp -r few cut
+  ls cut/checkpoint_*.h5 | sed -n '6,$p' | xargs rm
+  rm cut/timings.txt
+  expect "$1, rows $2, resumed on $ranks" 0 on_ranks $ranks "$talus" run --resume cut --quiet
+  cmp -s few/history.csv cut/history.csv || fail "$name: another history"
+}
+ranks=
+for type in dynamic explicit; do
+  bounce $type >bounce.yaml
+  turn
+  expect "$type, every row" 0 on_ranks $ranks "$talus" run bounce.yaml --out all --force --quiet
+  few_rows $type '{steps: 4}'
+  few_rows $type end
+done
+bounce dynamic >bounce.yaml
+expect "means of a sweep" 0 "$talus" sweep bounce.yaml --over 'output.history={steps: 1},{steps: 7},end' --measure both:mean --measure mean --out swept
+awk -F, 'NR > 1 {d = $2 - $3; if (!($2 * $2 > 1 && d * d < 1e-20 * $2 * $2)) bad = 1} END {exit bad || NR != 4}' swept/sweep.csv ||
+  fail "$name: $(cat swept/sweep.csv)"
+
 finish

@@ -58,12 +58,15 @@ static void test_values(void **state)
   for (size_t k = 0; k < sizeof bad / sizeof bad[0]; ++k) assert_int_equal(expand(bad[k], joined), 1);
 }
 
+/* A measure that goes along lines. */
+static const TakenMeans lines = {1, (const PetscBool[]){PETSC_FALSE}};
+
 static PetscReal take(Take what, PetscReal from, PetscReal to, const History *history)
 {
   const Taken taken = {
     .measure = (char *)"y", .take = what, .has_window = to > from, .from = from, .to = to, .times = 2};
   char why[TAKEN_WHY];
-  const PetscReal value = taken_value(&taken, history, why);
+  const PetscReal value = taken_value(&taken, &lines, history, why);
   assert_true(!PetscIsNanReal(value) || why[0] || (what == TAKE_END && !taken.has_window));
   return value;
 }
@@ -110,12 +113,40 @@ static void test_window_between_rows(void **state)
   assert_float_equal(take(TAKE_SLOPE, 0.9, 2, &history), -2, 1e-14);
 }
 
+/* A force, whose rows are means since the row before: 4 for 1 s, then 0 for 2 s, then, in a stage of statics, a line
+ * from there to 6. Its impulse is 4 + 0 + 3, whatever the row at the start says. */
+static void test_means(void **state)
+{
+  PetscReal rows[4][3] = {{0, 1, 9}, {1, 1, 4}, {3, 1, 0}, {4, 2, 6}};
+  char *names[] = {(char *)"time", (char *)"stage", (char *)"y"};
+  const History history = {.n_rows = 4, .n_columns = 3, .names = names, .values = rows[0]};
+  const TakenMeans means = {2, (const PetscBool[]){PETSC_TRUE, PETSC_FALSE}};
+  static const struct {
+    Take what;
+    PetscReal from, to, is;
+  } cases[] = {{TAKE_MEAN, 0, 0, 7. / 4},  {TAKE_MEAN, 0, 3, 4. / 3}, {TAKE_MEAN, 0.5, 2, 2 / 1.5},
+               {TAKE_MEAN, 0.25, 0.75, 4}, {TAKE_MEAN, 2, 3.5, 0.5},  {TAKE_MAX, 0.25, 0.75, 4},
+               {TAKE_MIN, 0.25, 0.75, 4},  {TAKE_END, 0.25, 0.75, 4}, {TAKE_END, 0, 1, 4},
+               {TAKE_MAX, 1.5, 2.5, 0},    {TAKE_END, 2, 3.5, 3}};
+  char why[TAKEN_WHY];
+  (void)state;
+  for (size_t k = 0; k < sizeof cases / sizeof cases[0]; ++k) {
+    const Taken taken = {.measure = (char *)"y",
+                         .take = cases[k].what,
+                         .has_window = (PetscBool)(cases[k].to > 0),
+                         .from = cases[k].from,
+                         .to = cases[k].to,
+                         .times = 1};
+    assert_float_equal(taken_value(&taken, &means, &history, why), cases[k].is, 1e-14);
+  }
+}
+
 static PetscReal take_and_say(Take what, PetscReal from, PetscReal to, const History *history, const char *must)
 {
   const Taken taken = {
     .measure = (char *)"y", .take = what, .has_window = PETSC_TRUE, .from = from, .to = to, .times = 1};
   char why[TAKEN_WHY];
-  const PetscReal value = taken_value(&taken, history, why);
+  const PetscReal value = taken_value(&taken, &lines, history, why);
   if (!strstr(why, must)) fail_msg("'%s' does not say '%s'", why, must);
   if (!must[0]) assert_string_equal(why, "");
   return value;
@@ -180,8 +211,10 @@ static void test_product(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_values),        cmocka_unit_test(test_taken), cmocka_unit_test(test_window_between_rows),
-    cmocka_unit_test(test_window_beyond), cmocka_unit_test(test_units), cmocka_unit_test(test_product),
+    cmocka_unit_test(test_values),        cmocka_unit_test(test_taken),
+    cmocka_unit_test(test_means),         cmocka_unit_test(test_window_between_rows),
+    cmocka_unit_test(test_window_beyond), cmocka_unit_test(test_units),
+    cmocka_unit_test(test_product),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,56 +5,69 @@
 
 typedef struct {
   Model *m;
-  PetscInt before;     /* those before it count: none can need itself */
-  PetscBool over_step; /* is one of them the mean over the last step? */
+  PetscInt before; /* those before it count: none can need itself */
 } Lookup;
-
-static PetscErrorCode Evaluate(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value, PetscBool *over_step);
 
 static PetscErrorCode Other(void *context, const char *name, PetscBool *known, PetscReal *value)
 {
-  Lookup *l = context;
+  const Lookup *l = context;
 
   PetscFunctionBeginUser;
   *known = PETSC_FALSE;
   for (PetscInt k = 0; k < l->before && !*known; ++k) {
     const MeasureSpec *s = &l->m->c->measures[k];
-    PetscBool over_step = measure_number(s)->over_step;
     if (strcmp(s->name, name) != 0) continue;
     *known = PETSC_TRUE;
-    if (measure_has_window(s) || strcmp(s->kind, "formula") != 0) PetscCall(ModelMeasure(l->m, s, k, value));
-    else PetscCall(Evaluate(l->m, s, k, value, &over_step));
-    l->over_step |= over_step && !measure_has_window(s);
+    PetscCall(ModelMeasure(l->m, s, k, value));
   }
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Evaluate(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value, PetscBool *over_step)
+typedef struct {
+  const Case *c;
+  PetscInt before;
+  PetscBool over_step; /* is one of those that it takes the mean over the last step? */
+} Kinds;
+
+static PetscErrorCode Kind(void *context, const char *name, PetscBool *known, PetscReal *value)
+{
+  Kinds *kinds = context;
+  PetscBool over_step;
+
+  PetscFunctionBeginUser;
+  *known = PETSC_FALSE;
+  *value = 1;
+  for (PetscInt k = 0; k < kinds->before && !*known; ++k) {
+    const MeasureSpec *s = &kinds->c->measures[k];
+    if (strcmp(s->name, name) != 0) continue;
+    *known = PETSC_TRUE;
+    PetscCall(MeasureOverStep(kinds->c, k, &over_step));
+    kinds->over_step |= over_step && !measure_has_window(s);
+  }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode MeasureOverStep(const Case *c, PetscInt k, PetscBool *is)
+{
+  const MeasureSpec *s = &c->measures[k];
+  Kinds kinds = {.c = c, .before = k};
+  Formula formula = {.value = Kind, .context = &kinds, .at = s->word};
+  PetscReal value;
+
+  PetscFunctionBeginUser;
+  if (strcmp(s->kind, "formula") != 0) kinds.over_step = measure_number(s)->over_step;
+  else PetscCall(FormulaValue(&formula, &value));
+  *is = (PetscBool)(kinds.over_step && !case_is_static(&c->analysis));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode Value(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
 {
   Lookup lookup = {.m = m, .before = index};
   Formula formula = {.value = Other, .context = &lookup, .at = s->word};
 
   PetscFunctionBeginUser;
   PetscCall(FormulaValue(&formula, value));
-  *over_step = lookup.over_step;
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode FormulaOverStep(Model *m, const MeasureSpec *s, PetscBool *is)
-{
-  PetscReal value;
-
-  PetscFunctionBeginUser;
-  PetscCall(Evaluate(m, s, (PetscInt)(s - m->c->measures), &value, is));
-  PetscFunctionReturn(0);
-}
-
-static PetscErrorCode Value(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
-{
-  PetscBool over_step;
-
-  PetscFunctionBeginUser;
-  PetscCall(Evaluate(m, s, index, value, &over_step));
   PetscFunctionReturn(0);
 }
 

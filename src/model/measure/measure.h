@@ -125,8 +125,11 @@ static inline PetscBool measure_has_window(const MeasureSpec *s) { return s->has
 PetscErrorCode WindowRemember(Model *m, const MeasureSpec *s, MeasureMemory *memory, PetscReal dt, PetscReal value);
 PetscReal window_value(const MeasureSpec *s, const MeasureMemory *memory);
 PetscBool window_list_fits(PetscInt64 length);
-/* Collective. Does a formula take a number that is the mean over the last step (formula.c)? */
-PetscErrorCode FormulaOverStep(Model *m, const MeasureSpec *s, PetscBool *is);
+/* Is the value of measure k of a case, before any window, the mean over the last step? Of a formula: is any that it
+ * takes (formula.c)? Not collective. */
+PetscErrorCode MeasureOverStep(const Case *c, PetscInt k, PetscBool *is);
+/* Collective. After a step of dt: what the next row of the history is to have of measure k (rows.c). */
+PetscErrorCode RowRemember(Model *m, PetscInt k, PetscReal dt);
 /* "kg/s" of "kg". */
 const char *rate_unit(const char *unit);
 

@@ -123,6 +123,7 @@ static PetscErrorCode Remember(Model *m, PetscInt k, PetscReal dt)
 
   PetscFunctionBeginUser;
   if (measure->remember) PetscCall(measure->remember(m, s, dt, m->memory[k].kept));
+  PetscCall(RowRemember(m, k, dt));
   if (!measure_has_window(s)) PetscFunctionReturn(0);
   PetscCall(Value(m, s, k, &value));
   PetscCall(WindowRemember(m, s, &m->memory[k], dt, value));

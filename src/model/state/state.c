@@ -74,6 +74,8 @@ static PetscErrorCode WholeToTables(Model *m, Tables *tables)
   PetscCall(TableAdd(table, "kept", NULL, COLUMN_REAL, MEASURE_KEPT, NULL, &column));
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
     PetscCall(PetscArraycpy((PetscReal *)column->data + k * MEASURE_KEPT, m->memory[k].kept, MEASURE_KEPT));
+  PetscCall(TableAdd(table, "row_mean_time_given", NULL, COLUMN_REAL, ROW_MEAN, NULL, &column));
+  for (PetscInt k = 0; k < m->c->n_measures; ++k) ((RowMean *)column->data)[k] = m->memory[k].row;
   PetscFunctionReturn(0);
 }
 
@@ -191,6 +193,8 @@ static void whole_from_tables(Model *m, const Table *table, const Table *measure
   const PetscReal *kept = table_data(measures, "kept", COLUMN_REAL, MEASURE_KEPT, reason);
   for (PetscInt k = 0; kept && k < m->c->n_measures * MEASURE_KEPT; ++k)
     m->memory[k / MEASURE_KEPT].kept[k % MEASURE_KEPT] = kept[k];
+  const RowMean *row = table_data(measures, "row_mean_time_given", COLUMN_REAL, ROW_MEAN, reason);
+  for (PetscInt k = 0; row && k < m->c->n_measures; ++k) m->memory[k].row = row[k];
 }
 
 static PetscErrorCode NodesBack(Model *m, const Tables *tables, char reason[256])

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <time.h>
 #include "input/case_file.h"
+#include "model/measure/measure.h"
 #include "output/directory/run_dir_files.h"
 #include "output/directory/run_dir_mark.h"
 #include "run/report/found.h"
@@ -34,6 +35,7 @@ PetscErrorCode MembersClear(Members *members)
   for (PetscInt i = 0; i < members->n; ++i) {
     PetscCall(SettingListClear(&members->member[i].set));
     PetscCall(PetscFree3(members->member[i].values, members->member[i].units, members->member[i].lack));
+    PetscCall(PetscFree(members->member[i].means));
   }
   PetscCall(PetscFree(members->member));
   members->n = 0;
@@ -100,6 +102,21 @@ static void check_measures(Member *m, const Case *c, Diag *diag)
   }
 }
 
+static PetscErrorCode LookForMeans(Member *m, const Case *c)
+{
+  PetscFunctionBeginUser;
+  m->n_stages = case_stages(c);
+  PetscCall(PetscFree(m->means));
+  PetscCall(PetscCalloc1(m->n_taken * m->n_stages, &m->means));
+  for (PetscInt i = 0; i < m->n_taken * m->n_stages; ++i) {
+    const Case *stage = case_stage(c, i % m->n_stages);
+    const PetscInt k = case_measure_of(stage, m->taken[i / m->n_stages].measure);
+    if (k < 0 || measure_has_window(stage->measures + k)) continue;
+    PetscCall(MeasureOverStep(stage, k, &m->means[i]));
+  }
+  PetscFunctionReturn(0);
+}
+
 /* What is taken from a time after the end would be nan, after all the runs. */
 static void check_windows(const Member *m, const Case *c, Diag *diag)
 {
@@ -121,6 +138,7 @@ PetscErrorCode MemberPlan(const Members *members, Member *m, Diag *diag)
   PetscCall(DiagSetResolver(diag, NULL, NULL)); /* what follows is about no line of a case */
   if (c) check_measures(m, c, diag);
   if (c) check_windows(m, c, diag);
+  if (c) PetscCall(LookForMeans(m, c));
   if (c) m->end = c->analysis.end;
   if (c && diag_errors(diag) == before) PetscCall(LookForRun(members, m, c, diag));
   PetscCall(CaseDestroy(&c));
@@ -139,7 +157,10 @@ PetscErrorCode MemberRead(const Members *members, Member *m)
     PetscCall(PetscSNPrintf(m->why, sizeof m->why, "its history.csv cannot be read: %s", reason));
     PetscFunctionReturn(0);
   }
-  for (PetscInt k = 0; k < m->n_taken; ++k) m->values[k] = taken_value(&m->taken[k], &history, m->lack[k]);
+  for (PetscInt k = 0; k < m->n_taken; ++k) {
+    const TakenMeans means = {m->n_stages, m->means + k * m->n_stages};
+    m->values[k] = taken_value(&m->taken[k], &means, &history, m->lack[k]);
+  }
   PetscCall(HistoryFree(&history));
   m->state = MEMBER_DONE;
   if (!members->keep) run_dir_remove_states(m->folder);

@@ -26,6 +26,8 @@ typedef struct {
   SettingList set;
   PetscInt n_taken; /* numbers of its history, */
   const Taken *taken;
+  PetscInt n_stages;
+  PetscBool *means;        /* n_taken x n_stages: is a row of it the mean since the row before? */
   PetscReal *values;       /* what they are: NaN until it is done */
   char (*units)[64];       /* and in which unit */
   char (*lack)[TAKEN_WHY]; /* why a value is missing, or not over all of its window; "" else */

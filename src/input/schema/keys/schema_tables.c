@@ -267,8 +267,10 @@ static const SchemaEntry output_entries[] = {
       .fallback = "[displacement, velocity, stress]", AT(OutputSpec, fields), .count = offsetof(OutputSpec, n_fields)),
   KEY("every", EVERY, NULL, "when states are written: a step ends there, and is shorter for it", .fallback = "end",
       AT(OutputSpec, every)),
-  KEY("history", EVERY, NULL, "when rows of history.csv are written, as `every`", .fallback = "{steps: 1}",
-      AT(OutputSpec, history)),
+  KEY("history", EVERY, NULL,
+      "when rows of history.csv are written, as `every`; what is a mean over a step in dynamics (forces of walls, "
+      "interfaces and boundaries, tractions, formulas of them) is in a row the mean since the row before",
+      .fallback = "{steps: 1}", AT(OutputSpec, history)),
   KEY("grid", BOOLEAN, NULL, "write the fields of the grid too", .fallback = "true", AT(OutputSpec, grid)),
   KEY(
     "walls", BOOLEAN, NULL,

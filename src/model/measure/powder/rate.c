@@ -42,17 +42,6 @@ static void forget(const MeasureSpec *s, MeasureMemory *memory)
   if (old) memmove(memory->list, memory->list + old, sizeof(PetscReal) * (size_t)memory->n_list);
 }
 
-/* Is the value at the end of a step the mean over the step? Of a formula: is any that it takes? */
-static PetscErrorCode OverStep(Model *m, const MeasureSpec *s, PetscBool *is)
-{
-  PetscFunctionBeginUser;
-  *is = PETSC_FALSE;
-  if (!m->scheme->inertia) PetscFunctionReturn(0);
-  if (strcmp(s->kind, "formula") != 0) *is = measure_number(s)->over_step;
-  else PetscCall(FormulaOverStep(m, s, is));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode WindowRemember(Model *m, const MeasureSpec *s, MeasureMemory *memory, PetscReal dt, PetscReal value)
 {
   const PetscReal t = case_time(m->c, m->time); /* what a search tries takes none */
@@ -61,7 +50,7 @@ PetscErrorCode WindowRemember(Model *m, const MeasureSpec *s, MeasureMemory *mem
   PetscFunctionBeginUser;
   if (PetscIsNanReal(value)) PetscFunctionReturn(0);
   if (!slides(s) && memory->n_list && memory->list[memory->n_list - 2] >= s->window[1]) PetscFunctionReturn(0);
-  PetscCall(OverStep(m, s, &over_step));
+  PetscCall(MeasureOverStep(m->c, (PetscInt)(s - m->c->measures), &over_step));
   if (over_step && !dt) PetscFunctionReturn(0);
   PetscCall(MemoryAppend(memory, OF_VALUE, (PetscReal[]){over_step ? t - dt : t, t, value}));
   forget(s, memory);

@@ -1,0 +1,47 @@
+/* What rows of the history hold of means over a step: where not every step has a row, the mean since the last one, so
+ * that a row times the time since then is the impulse, however few rows there are. */
+#include "model/measure/measure.h"
+
+/* With a row for each step it is that of the step. */
+static PetscBool skips_steps(const Case *c) { return c->output.history != -1; }
+
+/* One step alone leaves its value to the last digit. */
+static void add_step(RowMean *row, PetscReal dt, PetscReal value)
+{
+  if (row->given) *row = (RowMean){0};
+  if (PetscIsNanReal(value)) return;
+  const PetscReal before = row->time;
+  row->time += dt;
+  row->mean = before > 0 ? row->mean + dt / row->time * (value - row->mean) : value;
+}
+
+PetscErrorCode RowRemember(Model *m, PetscInt k, PetscReal dt)
+{
+  const MeasureSpec *s = &m->c->measures[k];
+  PetscBool over_step;
+  PetscReal value;
+
+  PetscFunctionBeginUser;
+  if (!dt || !skips_steps(m->c) || measure_has_window(s)) PetscFunctionReturn(0);
+  PetscCall(MeasureOverStep(m->c, k, &over_step));
+  if (!over_step) PetscFunctionReturn(0);
+  PetscCall(ModelMeasure(m, s, k, &value));
+  add_step(&m->memory[k].row, dt, value);
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelMeasureRow(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  const RowMean *row = &m->memory[index].row;
+
+  PetscFunctionBeginUser;
+  if (row->time > 0) *value = row->mean;
+  else PetscCall(ModelMeasure(m, s, index, value));
+  PetscFunctionReturn(0);
+}
+
+/* Its mean stays known until the next step: a run that ends here asks for it once more. */
+void model_row_given(Model *m)
+{
+  for (PetscInt k = 0; k < m->c->n_measures; ++k) m->memory[k].row.given = 1;
+}
