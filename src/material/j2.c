@@ -188,6 +188,12 @@ static void reduce(const PetscReal *given, PetscReal factor, PetscReal *reduced)
   reduced[1] = factor > 0.0 ? given[1] / factor : 0.0;
 }
 
+static void hardens(const PetscReal *parameters, PetscReal *yield, PetscReal *slope)
+{
+  *yield = parameters[YIELD];
+  *slope = parameters[HARDENING];
+}
+
 static void volume(PetscInt n, const PetscReal *state, PetscReal *J)
 {
   for (PetscInt p = 0; p < n; ++p) J[p] = state[p * N_STATE + 6];
@@ -211,7 +217,7 @@ static const LawField fields[] = {
   {                                                                                                                 \
     .parameters = parameters, .fields = fields, .n_state = N_STATE, .yields = PETSC_TRUE, .update = update,         \
     .energy = energy, .initial_stress = initial_stress, .bear = bear, .volume = volume, .volume_law = split_volume, \
-    .reduce = reduce, __VA_ARGS__                                                                                   \
+    .reduce = reduce, .hardens = hardens, __VA_ARGS__                                                               \
   }
 
 const Law law_j2 = J2(.name = "j2", .prepare = prepare_linear,

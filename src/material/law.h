@@ -130,6 +130,9 @@ typedef struct Law {
   /* The user's constants of a material whose strength is divided by factor > 0, or, with factor = 0, of
    * one that does not yield; NULL: the law has no strength. */
   void (*reduce)(const PetscReal *given, PetscReal factor, PetscReal *reduced);
+  /* Of a law with field equivalent_plastic_strain: its first yield stress, and by how much it rises with that strain,
+   * Pa. NULL: it does not. */
+  void (*hardens)(const PetscReal *parameters, PetscReal *yield, PetscReal *slope);
   /* What is wrong with parameters that are each in their range, or NULL. May itself be NULL. */
   const char *(*check)(const PetscReal *given);
   /* Tell packed parameters the time at the start of a step and its length, s; dt = 0 stands for no step, in

@@ -225,6 +225,37 @@ rm cut-after/timings.txt
 expect "a stage after it, resumed" 0 "$talus" run --resume cut-after --quiet
 cmp -s after/history.csv cut-after/history.csv || fail "$name: history.csv differs"
 
+# A bar that hardens bears exp(Y / H - 1) H until it necks, 472.4 and 274.9 here: just beyond yield, where a doubled displacement raises
+# the load by nothing, was taken for its limit (250.7, 250.4). One that hardens by less than its stress has it there, 250
+cat >bar.yaml <<'END'
+kinematics: axisymmetric
+method: fem
+analysis: {type: limit-load, limit: {raise: t}}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.5}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, material: m, points_per_cell: 4}]
+materials: {m: {law: j2, density: 1000, young: 200e9, poisson: 0.3, yield_stress: 250e6, hardening: 1e9}}
+boundary: [{on: {x: 0}, fix: [x]}, {on: {y: 0}, fix: [y]}]
+loads: {tractions: [{name: t, on: {body: b, y: 1}, value: [0, 1e6]}]}
+measures: {limit: {limit_load: value}, load: {limit_load: load}}
+output: {every: end}
+END
+for one in "1e9 472.4" "4e8 274.9" "2e8 250"; do
+  turn
+  set -- $one
+  expect "hardens by $1 on $ranks" 0 on_ranks $ranks "$talus" run bar.yaml --out bar --force --set materials.m.hardening=$1
+  lacks out.txt "no limit was found"
+  awk -F, -v f=$2 'END { exit !($3 > f * 0.995 && $3 < f * 1.012) }' bar/history.csv || fail "$name: $(tail -n 1 bar/history.csv)"
+done
+expect "hardens, whole" 0 "$talus" run bar.yaml --out bar --force --quiet --set checkpoint.steps=10 --set checkpoint.keep=99
+rm -rf cut && cp -r bar cut
+ls cut/checkpoint_*.h5 | sed -n '8,$p' | xargs rm
+rm cut/timings.txt
+expect "hardens, resumed" 0 "$talus" run --resume cut --quiet
+for file in limit.csv history.csv; do cmp -s bar/$file cut/$file || fail "$name: $file differs"; done
+# What is pressed spreads and hardens: there is no limit, and it says why
+expect "pressed and hardens" 0 "$talus" run bar.yaml --out bar --force --set 'loads.tractions[0].value=[0, -1e6]' --set analysis.limit.most=500
+says out.txt "by load = it still rises where" "by hardening = its last rise was" "warning = no limit was found"
+
 # What cannot be
 expect "no such load" 2 "$talus" check block.yaml --set analysis.limit.raise=pres
 says err.txt "there is no load, no entry of the boundary and no wall 'pres'" "did you mean 'press'"

@@ -65,6 +65,40 @@ void raised_go_on(Model *m, const Model *before)
   m->raised.unfound = before->raised.unfound;
 }
 
+#define HARDENING_STRAIN 0.05 /* a mechanism may strain by so much */
+
+/* Slope of the strength of a material that hardens by more than the tolerance until then, Pa. */
+static PetscReal hardening_of(const Model *m, PetscInt material)
+{
+  const Material *of = &m->materials[material];
+  PetscReal yield = 0, slope = 0;
+  if (of->law->hardens) of->law->hardens(of->parameters, &yield, &slope);
+  return slope * HARDENING_STRAIN > m->c->analysis.limit.tolerance * yield ? slope : 0;
+}
+
+PetscBool raised_hardens(const Model *m)
+{
+  PetscBool any = PETSC_FALSE;
+  for (PetscInt i = 0; m->c->analysis.type == ANALYSIS_LIMIT && i < m->c->n_materials; ++i)
+    any |= hardening_of(m, i) > 0;
+  return any;
+}
+
+PetscErrorCode RaisedHardening(const Model *m, PetscReal *work)
+{
+  const Points *points = m->points;
+  PetscReal local = 0;
+
+  PetscFunctionBeginUser;
+  *work = 0;
+  if (!raised_hardens(m)) PetscFunctionReturn(0);
+  for (PetscInt p = 0; p < points->n; ++p)
+    local +=
+      points->real[POINT_VOLUME][p] * hardening_of(m, points->material[p]) * PetscSqr(points->real[POINT_FLOW][p]);
+  PetscCall(MPIU_Allreduce(&local, work, 1, MPIU_REAL, MPIU_SUM, m->comm));
+  PetscFunctionReturn(0);
+}
+
 /* Quadrilaterals that ask what yields in their middle alone. */
 static PetscBool is_reduced(const Model *m)
 {

@@ -23,9 +23,11 @@ typedef enum { LIMIT_RISES, LIMIT_HOLDS, LIMIT_FALLS, LIMIT_MOST, LIMIT_LOST, LI
 typedef struct {
   PetscReal step;    /* the next */
   PetscReal outcome; /* a LimitOutcome */
+  PetscReal rises;   /* the last step's rise of the load, over what hardening explains; 0: nothing hardens */
   PetscInt n, capacity;
   LimitRow *rows;
 } LimitRun;
+#define LIMIT_SEARCH 3 /* numbers of it */
 
 PetscErrorCode LimitRunDestroy(LimitRun *run);
 /* Is there something left to try? */
