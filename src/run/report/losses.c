@@ -292,18 +292,27 @@ static PetscReal way_of_carriers(const Model *m)
   return most;
 }
 
-/* Where functions are not averaged over points and pieces of the surface loads are not where the stress that bears
- * them is (docs/theory.md, "Pieces of a loaded surface"). */
-static PetscErrorCode WarnOfMovedLoads(const Model *m, Diag *diag)
+PetscErrorCode LoadsMoved(const Model *m, PetscReal *moved)
 {
+  const PetscBool yields = materials_yield(m->c->n_materials, m->materials);
   PetscReal local, most;
 
   PetscFunctionBeginUser;
+  *moved = 0;
   if (!m->method->restores_grid || bears_where_loaded(m)) PetscFunctionReturn(0);
   local = way_of_carriers(m);
   PetscCall(MPIU_Allreduce(&local, &most, 1, MPIU_REAL, MPIU_MAX, m->comm));
-  if (!(most > (materials_yield(m->c->n_materials, m->materials) ? WAY_ALLOWED_YIELDING : WAY_ALLOWED)))
-    PetscFunctionReturn(0);
+  if (most > (yields ? WAY_ALLOWED_YIELDING : WAY_ALLOWED)) *moved = most;
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode WarnOfMovedLoads(const Model *m, Diag *diag)
+{
+  PetscReal most;
+
+  PetscFunctionBeginUser;
+  PetscCall(LoadsMoved(m, &most));
+  if (!most) PetscFunctionReturn(0);
   diag_warning(diag, "loads", "a loaded surface has moved by %.2g cells: with %s", (double)most,
                loads_have_pieces(m->loads)
                  ? "the mixed formulation stresses of points beside it may be wrong by a tenth of the load"

@@ -1,6 +1,7 @@
 #include "run/strength/limit.h"
 #include "base/text.h"
 #include "output/directory/run_dir_files.h"
+#include "run/report/losses.h"
 #include "run/strength/strength.h"
 
 #define GROWTH 1.5 /* of a step that was taken as it was */
@@ -215,17 +216,37 @@ static PetscReal share_stored(const LimitRun *s)
   return b->work > a->work ? (b->stored - a->stored) / (b->work - a->work) : 0;
 }
 
+/* A load that falls because its surface leaves the cells whose stress bore it: nobody knows what it would have come
+ * to. */
+static PetscErrorCode DoubtFall(const LimitRun *s, Model *m, RunDir *dir, PetscBool *doubted)
+{
+  PetscReal moved = 0;
+
+  PetscFunctionBeginUser;
+  if ((LimitOutcome)s->outcome == LIMIT_FALLS) PetscCall(LoadsMoved(m, &moved));
+  *doubted = (PetscBool)(moved > 0);
+  if (*doubted)
+    PetscCall(RunDirLog(dir,
+                        "by grid = the loaded surface had moved by %.2g cells when the load fell: these functions make "
+                        "loads fall there, whatever the material bears",
+                        (double)moved));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode LimitEnd(const LimitRun *s, Model *m, RunDir *dir)
 {
   const LimitSpec *spec = &m->c->analysis.limit;
   const LimitOutcome outcome = (LimitOutcome)s->outcome;
-  const PetscBool found = (PetscBool)(outcome == LIMIT_HOLDS || outcome == LIMIT_FALLS || outcome == LIMIT_FLOWS);
-  const char *what = found ? "limit load" : "largest load that was reached";
+  PetscBool doubted;
 
   PetscFunctionBeginUser;
+  PetscCall(TellLoad(s, dir));
+  PetscCall(DoubtFall(s, m, dir, &doubted));
+  const PetscBool ended = (PetscBool)(outcome == LIMIT_HOLDS || outcome == LIMIT_FALLS || outcome == LIMIT_FLOWS);
+  const PetscBool found = (PetscBool)(ended && !doubted);
+  const char *what = found ? "limit load" : "largest load that was reached";
   m->raised.unfound = !found;
   m->raised.value = found || largest_load(s) != 0 ? largest_load(s) : NAN;
-  PetscCall(TellLoad(s, dir));
   PetscCall(RunDirLog(dir, "by energy = %.1f %% of the load's last work was stored", 100 * (double)share_stored(s)));
   if (!found && !PetscIsNanReal(m->raised.value))
     PetscCall(RunDirLog(dir, "warning = no limit was found: the load is the largest that was reached"));
