@@ -33,13 +33,14 @@ draw() {
 }
 
 expect "fem" 0 "$talus" run case.yaml --out fem --quiet --set method=fem
-for ranks in 1 2 3; do
+for ranks in 3 2 1; do
   draw "lme"
   as_fem 1e-6
   lacks err.txt "drawn out"
 done
+# on one rank: MUMPS on several works in the order in which messages arrive
 rm run/checkpoint_*40.h5 && cp run/history.csv whole.csv
-expect "lme, resumed" 0 on_ranks 3 "$talus" run --resume run --quiet
+expect "lme, resumed" 0 "$talus" run --resume run --quiet
 cmp -s whole.csv run/history.csv || fail "$name: another history"
 turn
 draw "mls" --set 'basis={mls: {}}'
