@@ -49,7 +49,9 @@ static PetscBool see_wall(const Contact *s, ContactPoint *c, PetscReal t, const 
   if (along > (c->edge && is_flat(place) ? FACE_ASIDE : ROUND_CORNER)) return c->ahead = along * c->reach, PETSC_TRUE;
   for (int d = 0; d < 3; ++d) owner[d] = x[d] + c->reach * c->facing[d];
   if (!wall_near(s->walls, c->wall, t, owner, 2 * s->near + c->reach, c->side, place)) return PETSC_FALSE;
-  place->gap -= c->reach;
+  along = 0;
+  for (int d = 0; d < 3; ++d) along += ((owner[d] - x[d]) - c->reach * c->facing[d]) * place->normal[d];
+  place->gap -= c->reach + along; /* what rounding has added to the way there, as in place_of */
   return PETSC_TRUE;
 }
 

@@ -2,9 +2,11 @@
 #include "base/math/vector.h"
 #include <math.h>
 
-/* The nearest position of a facet: in its face, or on corner 0 1 2 or on edge 3 + (0 1 2). */
+/* The nearest position of a facet: in its face, or on corner 0 1 2 or on edge 3 + (0 1 2). It is known by the way from
+ * there to x, a sum of differences: far from the origin (maps have 5e6 m) a place of its own would be rounded to 1e-9 m,
+ * and each facet's gaps to another one. */
 typedef struct {
-  PetscReal square, at[3];
+  PetscReal square, way[3];
   PetscInt facet;
   int feature;
 } Foot;
@@ -30,7 +32,8 @@ static void foot_on_segment(const PetscReal corner[3][3], const PetscReal x[3], 
   difference(x, corner[0], v);
   const PetscReal s = vector_dot(v, e) / vector_dot(e, e);
   foot->feature = s <= 0 ? 0 : s >= 1 ? 1 : FACE;
-  for (int d = 0; d < 3; ++d) foot->at[d] = s <= 0 ? corner[0][d] : s >= 1 ? corner[1][d] : corner[0][d] + s * e[d];
+  if (s >= 1) difference(x, corner[1], foot->way);
+  for (int d = 0; d < 3 && s < 1; ++d) foot->way[d] = s <= 0 ? v[d] : v[d] - s * e[d];
 }
 
 /* In which of the seven regions around a triangle x is, and the nearest position as weights of the
@@ -64,7 +67,11 @@ static void foot_on_triangle(const PetscReal corner[3][3], const PetscReal x[3],
 {
   PetscReal w[3];
   foot->feature = nearest_weights(corner, x, w);
-  for (int d = 0; d < 3; ++d) foot->at[d] = w[0] * corner[0][d] + w[1] * corner[1][d] + w[2] * corner[2][d];
+  const PetscReal *origin = corner[w[1] == 1 ? 1 : w[2] == 1 ? 2 : 0];
+  for (int d = 0; d < 3; ++d) {
+    foot->way[d] = x[d] - origin[d];
+    for (int k = 0; k < 3; ++k) foot->way[d] -= w[k] * (corner[k][d] - origin[d]);
+  }
 }
 
 /* Squared distance of x from facet i, which is kept if it is the least. */
@@ -72,12 +79,10 @@ static PetscReal probe_facet(void *context, PetscInt i)
 {
   Probe *probe = context;
   const Facets *f = probe->facets;
-  PetscReal v[3];
   Foot foot = {.facet = i};
   if (f->dim == 2) foot_on_segment((const PetscReal(*)[3])f->corner[i], probe->x, &foot);
   else foot_on_triangle((const PetscReal(*)[3])f->corner[i], probe->x, &foot);
-  difference(probe->x, foot.at, v);
-  foot.square = vector_dot(v, v);
+  foot.square = vector_dot(foot.way, foot.way);
   if (foot.square < probe->nearest.square) probe->nearest = foot;
   return foot.square;
 }
@@ -89,16 +94,14 @@ static const PetscReal *feature_normal(const Facets *f, const Foot *foot)
   return f->edge_normal[f->edge[foot->facet][foot->feature - EDGE]];
 }
 
-static Nearness nearness(const Facets *f, const Foot *foot, const PetscReal x[3])
+static Nearness nearness(const Facets *f, const Foot *foot)
 {
   const PetscReal *n = feature_normal(f, foot);
-  PetscReal v[3];
   if (foot->feature == FACE) return NEAR;
   if (foot->feature < EDGE ? !f->vertex_rim[f->vertex[foot->facet][foot->feature]]
                            : !f->edge_rim[f->edge[foot->facet][foot->feature - EDGE]])
     return NEAR;
-  difference(x, foot->at, v);
-  return PetscSqr(vector_dot(v, n)) > PetscSqr(RIM_COSINE) * foot->square ? NEAR_OVER_RIM : NEAR_RIM;
+  return PetscSqr(vector_dot(foot->way, n)) > PetscSqr(RIM_COSINE) * foot->square ? NEAR_OVER_RIM : NEAR_RIM;
 }
 
 /* The distance from a corner has the Hessian (1 - n n) / r, from an edge along t
@@ -118,17 +121,15 @@ static void curve(const Facets *f, const Foot *foot, WallPlace *place)
     for (int j = 0; j < f->dim; ++j) place->curvature[3 * i + j] = ((i == j) - n[i] * n[j] - t[i] * t[j]) / place->gap;
 }
 
-static void describe(const Facets *f, const Foot *foot, const PetscReal x[3], WallPlace *place)
+static void describe(const Facets *f, const Foot *foot, WallPlace *place)
 {
   const PetscReal *normal = feature_normal(f, foot);
-  PetscReal v[3];
-  difference(x, foot->at, v);
-  const PetscReal along = vector_dot(v, normal), distance = PetscSqrtReal(foot->square);
+  const PetscReal along = vector_dot(foot->way, normal), distance = PetscSqrtReal(foot->square);
   *place = (WallPlace){.gap = along < 0 ? -distance : distance};
   /* On the feature itself, where its distance has no direction, and in a face. */
   const PetscBool flat = foot->feature == FACE || distance <= 1e-12 * (f->bounds[3] - f->bounds[0] + f->bounds[4] -
                                                                        f->bounds[1] + f->bounds[5] - f->bounds[2]);
-  for (int d = 0; d < 3; ++d) place->normal[d] = flat ? normal[d] : v[d] / place->gap;
+  for (int d = 0; d < 3; ++d) place->normal[d] = flat ? normal[d] : foot->way[d] / place->gap;
   if (flat && foot->feature == FACE) place->gap = along;
   if (!flat) curve(f, foot, place);
 }
@@ -139,8 +140,8 @@ Nearness facets_search(const Facets *f, const PetscReal x[3], PetscReal least, W
   Probe probe = {.facets = f, .x = x, .nearest = {.square = within, .facet = -1}};
   box_tree_nearest(f->tree, x, within, probe_facet, &probe);
   if (probe.nearest.facet < 0) return NEAR_NOT;
-  describe(f, &probe.nearest, x, place);
-  return nearness(f, &probe.nearest, x);
+  describe(f, &probe.nearest, place);
+  return nearness(f, &probe.nearest);
 }
 
 /* Is x so far away that flip times the distance exceeds `high`? Else no facet need be looked for
