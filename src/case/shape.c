@@ -143,11 +143,37 @@ static void children_bounds(const Shape *s, PetscInt dim, PetscReal min[3], Pets
   }
 }
 
-/* What lies on terrain lies no lower than that does there. */
+/* What lies on terrain lies no lower than that does there; below its bottom terrain takes nothing away, but other
+ * terrain ends as far below, where there is nothing meant. */
 static void raise_to_terrain(const Shape *s, PetscReal min[3], const PetscReal max[3])
 {
-  for (PetscInt i = 1; i < s->n_children && s->children[0].kind == SHAPE_TERRAIN; ++i)
-    if (s->children[i].kind == SHAPE_TERRAIN) min[2] = PetscMax(min[2], relief_lowest(s->children[i].relief, min, max));
+  for (PetscInt i = 1; i < s->n_children; ++i) {
+    const Shape *ground = s->children + i;
+    if (ground->kind != SHAPE_TERRAIN) continue;
+    if (s->children[0].kind == SHAPE_TERRAIN || min[2] >= ground->relief->bottom)
+      min[2] = PetscMax(min[2], relief_lowest(ground->relief, min, max));
+  }
+}
+
+/* How high a shape is in the ground plan of a box, where terrain bounds it; a mountain elsewhere does not count. */
+static PetscReal top_within(const Shape *s, const PetscReal min[3], const PetscReal max[3])
+{
+  const PetscBool least = s->kind == SHAPE_INTERSECTION;
+  const PetscInt n = s->kind == SHAPE_DIFFERENCE ? 1 : s->n_children;
+  PetscReal top = least ? PETSC_MAX_REAL : -PETSC_MAX_REAL;
+  if (s->kind == SHAPE_TERRAIN) return relief_highest(s->relief, min, max);
+  if (!n) return PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < n; ++i) {
+    const PetscReal child = top_within(s->children + i, min, max);
+    top = least ? PetscMin(top, child) : PetscMax(top, child);
+  }
+  return top;
+}
+
+static void lower_to_terrain(const Shape *s, PetscReal min[3], PetscReal max[3])
+{
+  const PetscReal top = top_within(s, min, max);
+  if (top > min[2]) max[2] = PetscMin(max[2], top); /* else there is nothing, and its place tells more */
 }
 
 static void polygon_bounds(const Shape *s, PetscReal min[3], PetscReal max[3])
@@ -205,6 +231,7 @@ void shape_bounds(const Shape *s, PetscInt dim, PetscReal min[3], PetscReal max[
     children_bounds(s, dim, min, max);
     if (s->kind == SHAPE_DIFFERENCE) raise_to_terrain(s, min, max);
     if (s->kind == SHAPE_INTERSECTION) corner_bounds(s, dim, min, max);
+    if (s->kind == SHAPE_INTERSECTION && dim == 3) lower_to_terrain(s, min, max);
     break;
   default: break; /* of walls alone */
   }

@@ -164,6 +164,44 @@ static void Between(void **state)
   assert_int_equal(ReliefDestroy(&top), 0);
 }
 
+/* Of what is left of terrain, a mountain elsewhere is no part: the box ends as high as the ground within it, which has
+ * its highest place at a corner, on the side of a square or on its diagonal. */
+static void LeftOf(void **state)
+{
+  static const struct {
+    PetscReal min[3], max[3], top, foot;
+  } cut[] = {{{0, 0, 0}, {3, 3, 100}, 1, 0.5},
+             {{0, 0, -3}, {5, 4, 100}, 3, 0.5}, /* a quarter of the way up */
+             {{0, 0, 0}, {0.5, 0.5, 0.75}, 0.75, 0.5},
+             {{9, 9, 0}, {10, 10, 10}, 10, 0}}; /* where there is none its bounds stay */
+  const PetscReal zero[3] = {0, 0, 0};
+  PetscReal min[3], max[3];
+  Relief *top = read_text("ncols 3\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 4\n1 1 9\n1 1 9\n", 1, zero);
+  Relief *bed = read_text("ncols 3\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 4\n.5 .5 8\n.5 .5 8\n", 1, zero);
+  Relief *fold = read_text("ncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\n0 2\n0 -9\n", 1, zero);
+  (void)state;
+  assert_true(top && bed && fold);
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(cut); ++k) {
+    Shape parts[2] = {{.kind = SHAPE_TERRAIN, .relief = top}, {.kind = SHAPE_BOX}};
+    Shape layer[2] = {{.kind = SHAPE_INTERSECTION, .n_children = 2, .children = parts},
+                      {.kind = SHAPE_TERRAIN, .relief = bed}};
+    const Shape left = {.kind = SHAPE_DIFFERENCE, .n_children = 2, .children = layer};
+    for (int d = 0; d < 3; ++d) parts[1].min[d] = cut[k].min[d], parts[1].max[d] = cut[k].max[d];
+    shape_bounds(layer, 3, min, max);
+    if (k < 3 && (min[2] != cut[k].min[2] || fabs(max[2] - cut[k].top) > 1e-14))
+      fail_msg("%d: [%g, %g]", (int)k, min[2], max[2]);
+    shape_bounds(&left, 3, min, max);
+    if (k < 3 && (fabs(min[2] - cut[k].foot) > 1e-14 || fabs(max[2] - cut[k].top) > 1e-14))
+      fail_msg("%d, on its bed: [%g, %g]", (int)k, min[2], max[2]);
+  }
+  /* up its diagonal from 0 to 2, and down from there to -9 */
+  assert_true(fabs(relief_highest(fold, (const PetscReal[]){0.2, 0}, (const PetscReal[]){0.6, 1}) - 1.2) < 1e-14);
+  assert_true(fabs(relief_highest(fold, (const PetscReal[]){0.7, 0}, (const PetscReal[]){0.8, 0.5}) + 0.8) < 1e-14);
+  assert_int_equal(ReliefDestroy(&fold), 0);
+  assert_int_equal(ReliefDestroy(&bed), 0);
+  assert_int_equal(ReliefDestroy(&top), 0);
+}
+
 static void Mistakes(void **state)
 {
   static const struct {
@@ -195,7 +233,7 @@ static void Mistakes(void **state)
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(Reads),      cmocka_unit_test(Plane),   cmocka_unit_test(Fold),    cmocka_unit_test(NoHeight),
-    cmocka_unit_test(NotANumber), cmocka_unit_test(Between), cmocka_unit_test(Mistakes)};
+    cmocka_unit_test(Reads),      cmocka_unit_test(Plane),   cmocka_unit_test(Fold),   cmocka_unit_test(NoHeight),
+    cmocka_unit_test(NotANumber), cmocka_unit_test(Between), cmocka_unit_test(LeftOf), cmocka_unit_test(Mistakes)};
   return cmocka_run_group_tests(tests, open_file, remove_file);
 }

@@ -84,6 +84,48 @@ void relief_bounds(const Relief *r, PetscReal min[3], PetscReal max[3])
   min[2] = r->bottom;
 }
 
+/* The highest place of one triangle of square s in the part of the square from low to high (0 to 1): it is flat, so
+ * that is a corner of what they share. Those are corners of the part, or lie on the diagonal. */
+static PetscReal highest_of_triangle(const Relief *r, const PetscInt s[2], PetscBool below, const PetscReal low[2],
+                                     const PetscReal high[2])
+{
+  PetscReal slope[2], most = -PETSC_MAX_REAL;
+  slopes(r, s, below, slope);
+  for (int k = 0; k < 8; ++k) {
+    PetscReal u[2] = {k & 1 ? high[0] : low[0], k & 2 ? high[1] : low[1]};
+    if (k >= 4) u[0] = u[1] = k & 1 ? high[k / 2 - 2] : low[k / 2 - 2];
+    if (below ? u[0] < u[1] : u[0] > u[1]) continue;
+    if (u[0] < low[0] || u[0] > high[0] || u[1] < low[1] || u[1] > high[1]) continue;
+    const PetscReal height = relief_post(r, s[0], s[1]) + r->step * (u[0] * slope[0] + u[1] * slope[1]);
+    if (height > most) most = height; /* not of a post without one */
+  }
+  return most;
+}
+
+PetscReal relief_highest(const Relief *r, const PetscReal min[2], const PetscReal max[2])
+{
+  PetscReal from[2], to[2], highest = -PETSC_MAX_REAL;
+  PetscInt first[2], last[2], s[2];
+  for (int d = 0; d < 2; ++d) {
+    const PetscReal end = (PetscReal)(r->n[d] - 1);
+    from[d] = PetscMax(0, PetscMin(end, (PetscMax(min[d], -1e150) - r->low[d]) / r->step));
+    to[d] = PetscMax(0, PetscMin(end, (PetscMin(max[d], 1e150) - r->low[d]) / r->step));
+    first[d] = PetscMin(r->n[d] - 2, (PetscInt)floor(from[d]));
+    last[d] = PetscMin(r->n[d] - 2, (PetscInt)floor(to[d]));
+  }
+  for (s[1] = first[1]; s[1] <= last[1]; ++s[1])
+    for (s[0] = first[0]; s[0] <= last[0]; ++s[0]) {
+      PetscReal low[2], high[2];
+      for (int d = 0; d < 2; ++d) {
+        low[d] = PetscMax(0, from[d] - (PetscReal)s[d]);
+        high[d] = PetscMin(1, to[d] - (PetscReal)s[d]);
+      }
+      for (int below = 0; below < 2; ++below)
+        highest = PetscMax(highest, highest_of_triangle(r, s, (PetscBool)below, low, high));
+    }
+  return highest;
+}
+
 PetscReal relief_lowest(const Relief *r, const PetscReal min[2], const PetscReal max[2])
 {
   PetscInt from[2], to[2];

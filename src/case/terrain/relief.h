@@ -28,5 +28,7 @@ PetscReal relief_steepness(const Relief *relief);
 void relief_bounds(const Relief *relief, PetscReal min[3], PetscReal max[3]);
 /* No surface is lower in a rectangle; the bottom where that has posts without a height, or none. */
 PetscReal relief_lowest(const Relief *relief, const PetscReal min[2], const PetscReal max[2]);
+/* How high the surface is in a rectangle, m; -PETSC_MAX_REAL where there is none. */
+PetscReal relief_highest(const Relief *relief, const PetscReal min[2], const PetscReal max[2]);
 /* Height of post (i, j). */
 static inline PetscReal relief_post(const Relief *r, PetscInt i, PetscInt j) { return r->height[j * r->n[0] + i]; }
