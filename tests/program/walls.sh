@@ -363,6 +363,15 @@ END
 expect "a terrain on a map" 0 "$talus" run terrain.yaml --out terrain --quiet
 awk -F, 'END { exit !(($3 - 6250) ^ 2 < 1e-4) }' terrain/history.csv || fail "$name: $(tail -n 1 terrain/history.csv)"
 
+# Beside its last posts nothing bears: posts at 0, 1 and 2 m of a file whose corner is at -0.5.
+awk 'BEGIN { print "ncols 3\nnrows 4\nxllcorner -0.5\nyllcorner -0.5\ncellsize 1"; for (i = 0; i < 4; ++i) print "0.5 0.5 0.5" }' >ter.asc
+sed 's/min: \[500000, 5000000, 100\], max: \[500004, 5000002, 101.5\]/min: [0, 0, 0], max: [4, 2, 1.5]/
+  s/min: \[500002, 5000000.5, 100.25\], max: \[500003.25, 5000001.5, 100.75\]/min: [0.5, 0.5, 0.5], max: [1.5, 1.5, 1]/' terrain.yaml >ends.yaml
+expect "terrain that ends in the grid" 0 "$talus" check ends.yaml
+says err.txt "the posts of terrain 't' end within the grid from (0, 0) to (2, 3) m, that reaches from (0, 0) to (4, 2) m" "half a cell within"
+expect "one that does not" 0 "$talus" check ends.yaml --set 'grid.box.max=[2, 2, 1.5]'
+lacks err.txt "end within the grid"
+
 # --- walls that appear amidst material ---
 for type in dynamic explicit; do
   sed -e "s/type: static, steps: 4/type: $type, end: 0.1, step: 0.01/" -e 's/normal: \[1, 0\]}}, motion.*/normal: [1, 0]}}, from: 0.05}/' -e 's/point: \[0, 0\], normal: \[1, 0\]/point: [0.1, 0], normal: [1, 0]/' near.yaml >gate.yaml

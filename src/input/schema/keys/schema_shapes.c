@@ -65,7 +65,9 @@ static const SchemaTable terrain = {
   .help =
     "What lies below a surface of heights along z, flat between three posts. The difference of two is what lies "
     "between "
-    "them: a slide on its bed. Where a post has no height (NODATA_value) there is nothing.",
+    "them: a slide on its bed. Where a post has no height (NODATA_value) there is nothing. Heights are those of the "
+    "middles of the file's cells: the terrain ends there, half a cell within the corner that xllcorner and yllcorner "
+    "(or a GeoTIFF) give.",
   .entries = terrain_entries,
   .check = SchemaCheckTerrain};
 

@@ -138,6 +138,31 @@ static void advise_wall(const Model *m, PetscInt k, Diag *diag)
                extent_of(m->dim, min, max, walls), extent_of(m->dim, m->grid->min, m->grid->max, grid));
 }
 
+/* Terrain ends at its last posts; material that goes farther falls beside it, and no message stops the run as long as
+ * there are cells. */
+static void advise_terrain(const Model *m, PetscInt k, Diag *diag)
+{
+  const WallSpec *wall = m->c->walls + k;
+  PetscReal min[3], max[3], reach = 0;
+  char path[64], posts[192], grid[192];
+  if (!m->method->restores_grid || wall->shape.kind != SHAPE_TERRAIN || wall->n_motions || wall->has_mass) return;
+  if (wall->inside) return;
+  wall_bounds(m->walls, k, 0, min, max);
+  for (PetscInt d = 0; d < 2; ++d) {
+    if (min[d] > m->grid->max[d] || max[d] < m->grid->min[d]) return; /* which advise_wall tells */
+    reach = PetscMax(reach, PetscMax(min[d] - m->grid->min[d], m->grid->max[d] - max[d]));
+  }
+  if (reach <= 1e-6 * m->grid->smallest) return;
+  PetscSNPrintf(path, sizeof path, "walls[%d].shape.terrain", (int)k);
+  diag_warning(diag, path,
+               "the posts of terrain '%s' end within the grid%s, that reaches%s: what comes there falls past the "
+               "terrain",
+               wall->name, extent_of(2, min, max, posts), extent_of(2, m->grid->min, m->grid->max, grid));
+  diag_hint(diag,
+            "let the grid end at the last posts: they stand in the middle of the file's cells, half a cell within "
+            "the corner that xllcorner and yllcorner give");
+}
+
 /* The pressure of the second equation is that before the flow, of which dilatancy takes something away at each point by
  * itself: changes of volume inside a cell are not held (docs/decisions.md, 263). */
 static void tell_lost_way(const Model *m, Diag *diag)
@@ -194,7 +219,10 @@ static PetscErrorCode AdviseReaction(const Model *m, const MeasureSpec *s, Diag 
 PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
 {
   PetscFunctionBeginUser;
-  for (PetscInt k = 0; m->walls && k < m->c->n_walls; ++k) advise_wall(m, k, diag);
+  for (PetscInt k = 0; m->walls && k < m->c->n_walls; ++k) {
+    advise_wall(m, k, diag);
+    advise_terrain(m, k, diag);
+  }
   advise_jumps(m, diag);
   PetscCall(AdviseUnits(m, diag));
   for (PetscInt b = 0; b < m->c->n_bodies; ++b)
