@@ -1,6 +1,7 @@
 /* What walls do to the material, and bodies to each other. */
 #include <math.h>
 #include <string.h>
+#include "base/math/vector.h"
 #include "model/measure/measure.h"
 
 static const WallState *wall_of(const Model *m, const MeasureSpec *s)
@@ -103,6 +104,14 @@ static PetscErrorCode Contacts(Model *m, const MeasureSpec *s, PetscInt index, P
 
 enum { PRESSURE, PEAK, SHEAR };
 
+/* What a point of a wall bears, N. How points share the force of a node is theirs alone, and that of the few in a shape
+ * says little: there it is the traction of the nodes on their surface. All together have the same of both. */
+static void force_of(const MeasureSpec *s, const ContactTraction *t, PetscReal *along, PetscReal across[3])
+{
+  *along = s->has_in ? t->pressure * t->section : vector_dot(t->force, t->normal);
+  for (int d = 0; d < 3; ++d) across[d] = s->has_in ? t->shear[d] * t->section : t->force[d] - *along * t->normal[d];
+}
+
 /* Mean pressure, largest pressure, and mean of the shear traction as a vector, of what touches the wall in the shape
  * of the measure. */
 static PetscErrorCode Tractions(const Model *m, const MeasureSpec *s, PetscReal values[3])
@@ -114,11 +123,11 @@ static PetscErrorCode Tractions(const Model *m, const MeasureSpec *s, PetscReal 
   PetscFunctionBeginUser;
   PetscCall(ModelTractions(m, (PetscInt)(wall_of(m, s) - m->contact->wall), &n, &t));
   for (PetscInt k = 0; k < n; ++k) {
-    PetscReal along = 0;
+    PetscReal along, across[3];
     if (s->has_in && !shape_contains(&s->in, m->dim, t[k].x, 0)) continue;
-    for (int d = 0; d < 3; ++d) along += t[k].force[d] * t[k].normal[d];
+    force_of(s, t + k, &along, across);
     sum[0] += t[k].section, sum[1] += along;
-    for (int d = 0; d < 3; ++d) sum[2 + d] += t[k].force[d] - along * t[k].normal[d];
+    for (int d = 0; d < 3; ++d) sum[2 + d] += across[d];
     peak = PetscMax(peak, t[k].pressure);
   }
   PetscCall(PetscFree(t));
