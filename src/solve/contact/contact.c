@@ -14,6 +14,7 @@ PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **
   PetscCall(PetscNew(contact));
   (*contact)->walls = walls;
   (*contact)->dim = c->kinematics->dim;
+  (*contact)->hoop = c->kinematics->hoop;
   (*contact)->n_walls = c->n_walls;
   (*contact)->n_partners = c->n_walls + c->n_interfaces;
   (*contact)->sides = contact_sides(c);

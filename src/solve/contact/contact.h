@@ -96,6 +96,7 @@ typedef struct Contact {
   PetscInt n_rigid;
   RigidWall *rigid; /* walls with mass */
   PetscInt dim, n_walls;
+  PetscBool hoop;      /* do all turn about x = 0? */
   PetscInt n_partners; /* walls and interfaces */
   PetscInt sides;      /* of each that may meet one carrier: contact_sides */
   PetscInt n, capacity;

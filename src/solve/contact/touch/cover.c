@@ -1,10 +1,16 @@
 /* What touches, and what bears: of more points than nodes can follow some bear nothing, a hair off the wall (along an
  * edge that a wedge has turned it was each second one). Their surface counts as touching, and what it bears by adhesion
  * bear those beside them (docs/theory.md, section 65). */
+#include "base/math/vector.h"
 #include "solve/contact/touch/weight.h"
 
-#define HAIR 4e-3  /* of a cell */
-#define BESIDE 0.5 /* of its functions */
+#define HAIR 4e-3   /* of a cell */
+#define BESIDE 0.5  /* of its functions */
+#define POCKET 3e-2 /* of a cell: what bends (a ball of eight cells) leaves as much between two that bear */
+#define AMIDST 0.3  /* of a cell from the middle of what bears around it */
+
+/* What bears at a node before a partner: its surface, and that times its place. */
+enum { AT_BEARER, AT_PLACE, AT_ALL = 4 };
 
 /* Surface of what bears something at each node, before each partner: n_nodes x n_partners. */
 static PetscErrorCode Bearing(const Contact *s, const Grid *grid, PetscReal *nodes)
@@ -37,6 +43,63 @@ static PetscReal beside(const Contact *s, const ContactPoint *c, PetscReal gap, 
   return sum > 0 ? borne / sum : 0;
 }
 
+static PetscBool is_over_pocket(const Contact *s, const ContactPoint *c)
+{
+  return (PetscBool)(c->state == CONTACT_OPEN && !c->inner && c->gap <= POCKET * s->length);
+}
+
+/* What bears at each node, and where: n_nodes x n_partners x AT_ALL. */
+static PetscErrorCode Bearers(const Contact *s, const Grid *grid, PetscReal *nodes)
+{
+  PetscFunctionBeginUser;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
+    for (PetscInt e = c->first; e < c->first + c->own && c->state != CONTACT_OPEN; ++e) {
+      PetscReal *at = nodes + AT_ALL * (s->node[e] * s->n_partners + c->wall);
+      const PetscReal area = contact_weight(s, e) * c->section;
+      at[AT_BEARER] += area;
+      for (int d = 0; d < 3; ++d) at[AT_PLACE + d] += area * c->x[d];
+    }
+  PetscCall(GridSumToOwners(grid, AT_ALL * s->n_partners, nodes));
+  PetscCall(GridToGhosts(grid, AT_ALL * s->n_partners, nodes));
+  PetscFunctionReturn(0);
+}
+
+/* Does it stand between others that bear, not beyond the last of them? Then something bears at all of its nodes, on
+ * either side: what they can follow of a bent surface leaves it off the wall. Its ring about an axis has the same on
+ * the other side. */
+static PetscBool is_amidst(const Contact *s, const ContactPoint *c, const PetscReal *nodes)
+{
+  PetscReal sum = 0, aside[3] = {0, 0, 0};
+  for (PetscInt e = c->first; e < c->first + c->own; ++e) {
+    const PetscReal *at = nodes + AT_ALL * (s->node[e] * s->n_partners + c->wall), weight = contact_weight(s, e);
+    if (weight > 0 && at[AT_BEARER] <= 0) return PETSC_FALSE;
+    for (int d = 0; d < 3 && weight > 0; ++d) aside[d] += weight * (at[AT_PLACE + d] / at[AT_BEARER] - c->x[d]);
+    sum += weight;
+  }
+  if (s->hoop && c->x[0] < s->length) aside[0] = PetscMin(0, aside[0]);
+  const PetscReal along = vector_dot(aside, c->facing);
+  for (int d = 0; d < 3; ++d) aside[d] -= along * c->facing[d];
+  return (PetscBool)(vector_dot(aside, aside) <= PetscSqr(AMIDST * s->length * sum));
+}
+
+/* Counts those over pockets between others. */
+static PetscErrorCode CoverPockets(Contact *s, const Grid *grid)
+{
+  PetscReal *nodes;
+  PetscBool any = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) any = (PetscBool)(any || is_over_pocket(s, c));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_BOOL, MPI_LOR, grid->comm));
+  if (!any) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(AT_ALL * grid->n_nodes * s->n_partners, &nodes));
+  PetscCall(Bearers(s, grid, nodes));
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c)
+    c->covered = (PetscBool)(c->covered || (is_over_pocket(s, c) && is_amidst(s, c, nodes)));
+  PetscCall(PetscFree(nodes));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ContactCover(Contact *s, const Grid *grid)
 {
   PetscReal *nodes;
@@ -47,6 +110,7 @@ PetscErrorCode ContactCover(Contact *s, const Grid *grid)
     c->covered = (PetscBool)(c->state != CONTACT_OPEN);
     any = (PetscBool)(any || is_near(s, c, c->gap));
   }
+  PetscCall(CoverPockets(s, grid));
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_BOOL, MPI_LOR, grid->comm));
   if (!any) PetscFunctionReturn(0); /* as a rule */
   PetscCall(PetscMalloc1(grid->n_nodes * s->n_partners, &nodes));
