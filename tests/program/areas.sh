@@ -296,6 +296,8 @@ measures:
 END
 turn
 expect "a sphere" 0 on_ranks $ranks "$talus" run sphere.yaml --out run --force --quiet
+expect "a sphere between plates on lines of the grid" 2 "$talus" check sphere.yaml --set 'grid.box={min: [0, -0.0625], max: [0.5625, 1.0625]}'
+says err.txt "wall 'w' goes through a body" "let the wall stand amidst a row of cells"
 # a^3 = 3 F R / 4 E', p0 = 3 F / 2 pi a^2; within 0.03 m of the axis the mean is 2/3 p0 (1 - (1 - s^2)^1.5) / s^2 with s = 0.03 / a
 peak=$(awk -F, 'END { a = (0.75 * $7 * 0.50046875 * 0.91e-6) ^ (1 / 3); print 1.5 * $7 / 3.14159265 / a ^ 2 }' run/history.csv)
 near peak "$(last 4)" "$peak" 0.05

@@ -123,6 +123,11 @@ static PetscErrorCode TellThrough(const Model *m, PetscInt k, Worst *inside, Dia
   diag_error(diag, path, "wall '%s' goes through a body at the start: the point at (%g, %g, %g) m is %.3g m inside it",
              m->c->walls[k].name, (double)inside->x[0], (double)inside->x[1], (double)inside->x[2],
              (double)inside->depth);
+  if (inside->depth <= AMIDST * m->grid->smallest)
+    diag_hint(
+      diag,
+      "an overlap that round bodies want in statics? What of it lies beyond a line of the grid has points of its "
+      "own: let the wall stand amidst a row of cells, the grid half a cell aside");
   PetscFunctionReturn(0);
 }
 
