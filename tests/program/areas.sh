@@ -329,4 +329,53 @@ expect "tilted" 1 "$talus" run turns.yaml --set 'walls[0].contact=friction' --se
   --set 'walls[0].motion[0].rotation.rate=-0.75' --set analysis.steps=75 --set analysis.smallest=1e-3 --out run --force --quiet
 near angle "$(awk -F, 'END { print 0.75 * $1 }' run/history.csv)" 0.496 0.02
 
+# --- explicit steps let material in by more than its lowest layer of points is thick: its surface counts once ---
+cat >thin.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: explicit, end: 1.5, step: 0.02, damping: 5}
+grid: {box: {min: [-0.5, -0.5], max: [2.5, 2]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0.245], max: [1.5, 1.245]}}, points_per_cell: 4, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 2e5, poisson: 0}}
+walls: [{name: w, shape: {half-space: {point: [0, 0.245], normal: [0, 1]}}, friction: 0, adhesion: 2000}]
+loads: {gravity: [4, -9.81]}
+measures: {area: {contact: area, of: {wall: w}}, mean: {contact: pressure, of: {wall: w}}, along: {wall_force: x, of: {wall: w}}, momentum: {momentum: x}}
+END
+# thin CASE AREA PRESSURE ADHESION MOMENTUM OPTIONS...
+thin() {
+  thin=$1 area=$2 mean=$3 along=$4 momentum=$5
+  shift 5
+  turn
+  expect "a thin layer in explicit steps, $thin $*" 0 on_ranks $ranks "$talus" run "$thin" "$@" --out run --force --quiet
+  near area "$(last 3)" "$area" 0.015
+  near mean "$(last 4)" "$mean" 0.025
+  near along "$(last 5)" "$along" 0.015
+  near momentum "$(last 6)" "$momentum" 0.015
+}
+# 1500 kg are pulled by 6000 N and held by 3000: momentum is 600 (1 - exp(-7.5))
+thin thin.yaml 1.5 9810 -3000 599.7
+thin thin.yaml 1.5 9810 -3000 599.7 --set 'basis={bspline: {}}'
+thin thin.yaml 1.5 9810 -3000 599.7 --set 'bodies[0].points_per_cell=9'
+sed -e 's/plane-strain/3d/; s/min: \[-0.5, -0.5\], max: \[2.5, 2\]/min: [-0.5, -0.5, -0.5], max: [1.5, 1, 1]/; s/min: \[0, 0.245\], max: \[1.5, 1.245\]/min: [0, 0, 0.245], max: [0.75, 0.5, 0.745]/' \
+  -e 's/points_per_cell: 4/points_per_cell: 8/; s/point: \[0, 0.245\], normal: \[0, 1\]/point: [0, 0, 0.245], normal: [0, 0, 1]/; s/gravity: \[4, -9.81\]/gravity: [4, 0, -9.81]/; s/adhesion: 2000/adhesion: 1000/' thin.yaml >space.yaml
+thin space.yaml 0.375 4905 -375 74.96
+thin space.yaml 0.375 4905 -375 74.96
+
+# ... in layers that end in steps across a slope of 2 degrees, too: as implicit steps have it
+sed -e 's/box: {min: \[0, 0.245\], max: \[1.5, 1.245\]}/polygon: [[-0.749543, -0.031175], [0.749543, 0.021175], [0.714643, 1.020565], [-0.784443, 0.968216]]/; s/min: \[-0.5, -0.5\], max: \[2.5, 2\]/min: [-1.5, -0.5], max: [3, 2]/' \
+  -e 's/point: \[0, 0.245\], normal: \[0, 1\]/point: [0, -0.005], normal: [-0.0348995, 0.9993908]/; s/gravity: \[4, -9.81\]/gravity: [3.3424, -9.6994]/' thin.yaml >slope.yaml
+expect "a thin layer on a slope" 0 "$talus" run slope.yaml --out run --force --quiet
+near area "$(last 3)" 1.4939 5e-3
+
+# ... and on another body, whichever of them looks
+sed -e 's/^bodies.*/bodies: [{name: b, shape: {box: {min: [0.5, 0.245], max: [2, 1.245]}}, material: m}, {name: c, shape: {box: {min: [0, -0.5], max: [3, 0.245]}}, material: m}]/; s/poisson: 0}/poisson: 0.3}/; s/max: \[2.5, 2\]/max: [4, 2]/' \
+  -e 's/^walls.*/interfaces: [{name: w, between: [FIRST], contact: friction, friction: 0, adhesion: 1000}]/; s/gravity: \[4/gravity: [2/; s/end: 1.5/end: 1/' \
+  -e 's/^measures.*/measures: {momentum: {momentum: x, of: {body: b}}}\nboundary: [{on: {boundary: bottom}, fix: [x, y]}]/' thin.yaml >both.yaml
+for first in 'b, c' 'c, b'; do
+  turn
+  sed "s/FIRST/$first/" both.yaml >case.yaml
+  expect "a thin layer on a body, $first" 0 on_ranks $ranks "$talus" run case.yaml --out run --force --quiet
+  near momentum "$(last 3)" 298 0.05
+done
+
 finish

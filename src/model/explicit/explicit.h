@@ -44,6 +44,7 @@ typedef struct Explicit {
   PetscInt width;        /* 1 + 2 dim */
   PetscReal *sum;        /* n_nodes x width: mass, kg, momentum, kg m/s, and force, N */
   PetscReal *motion;     /* n_nodes x 2 dim: velocity at the end of the substep, and what points gain, m/s */
+  PetscReal *surface;    /* n_nodes x partners x dim: normals that surface looks along in the lap */
   PetscReal *springs;    /* with walls, n_nodes x 2: stiffness of the springs, N/m, and mass, kg */
   PetscReal *straining;  /* n_nodes x dim: the velocity that strains the points, m/s */
   PetscBool as_strained; /* do points move by it, too (explicit_way)? */
@@ -107,6 +108,8 @@ void near_forget(const Model *model, const Explicit *e);
 /* Their functions where they are now. */
 PetscErrorCode NearSee(const Model *model, Explicit *e);
 
+/* inside.c. Collective in the first substep of a lap. What is pressed into walls within bodies is no contact. */
+PetscErrorCode WallsTouchSurface(Model *model, Explicit *e, const NodalScene *scene);
 /* walls.c. Forces of walls go to the nodes. */
 PetscErrorCode WallsPush(Model *model, Explicit *e);
 /* Material moves along walls: before the points do. */

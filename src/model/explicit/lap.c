@@ -94,7 +94,7 @@ PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
   PetscCall(PetscMalloc1(n, &e->active));
   if (m->contact) PetscCall(PetscCalloc2(m->contact->n_partners, &e->pushed, m->contact->n_partners, &e->rubbed));
   if (m->contact) PetscCall(PetscMalloc1(m->contact->n_rigid, &e->ease));
-  if (m->contact) PetscCall(PetscCalloc1(2 * n, &e->springs));
+  if (m->contact) PetscCall(PetscCalloc2(2 * n, &e->springs, n * m->contact->n_partners * dim, &e->surface));
   PetscCall(PetscMalloc1(n * dim, &e->held));
   for (PetscInt k = 0; k < m->c->n_boundary; ++k) e->moved = e->moved || m->c->boundary[k].kind != MOTION_FIXED;
   PetscFunctionReturn(0);
@@ -109,7 +109,7 @@ PetscErrorCode ExplicitDestroy(Explicit **explicit)
   PetscCall(PetscFree(e->sum));
   PetscCall(PetscFree(e->motion));
   PetscCall(PetscFree(e->straining));
-  PetscCall(PetscFree(e->springs));
+  PetscCall(PetscFree2(e->springs, e->surface));
   PetscCall(PetscFree3(e->mark, e->bare, e->apart));
   PetscCall(PetscFree(e->active));
   PetscCall(PetscFree(e->held));

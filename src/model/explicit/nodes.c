@@ -41,6 +41,7 @@ PetscErrorCode ForcesBegin(Model *m, Explicit *e)
     scene.seen = e->near.point;
   }
   PetscCall(Begin(m, &scene, PETSC_TRUE));
+  PetscCall(WallsTouchSurface(m, e, &scene));
   PetscCall(WallsPush(m, e));
   PetscFunctionReturn(0);
 }

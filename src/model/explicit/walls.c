@@ -77,7 +77,7 @@ static void push(const Model *m, const Explicit *e, ContactPoint *c)
   c->gap = place.gap;
   if (e->dt > 0 && c->wall < m->contact->n_walls)
     wall_motion(m->walls, c->wall, e->time, e->time + e->dt, c->x, c->swept);
-  if (e->dt > 0 ? c->gone : is_still_to_come(m, e, c)) return;
+  if (c->section == 0 || (e->dt > 0 ? c->gone : is_still_to_come(m, e, c))) return;
   c->state = contact_law(&c->law, &place, nowhere, &before, &c->now, NULL);
 }
 
@@ -129,7 +129,7 @@ PetscErrorCode WallsPush(Model *m, Explicit *e)
   }
   PetscCall(Limit(m, e));
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (!contact_is_sprung(*kept_of(m, c))) take_over(c);
+    if (c->section > 0 && !contact_is_sprung(*kept_of(m, c))) take_over(c);
     push(m, e, c);
     if (c->state == CONTACT_OPEN) continue;
     contact_force(c, f);

@@ -185,6 +185,10 @@ PetscReal contact_face(const Points *points, PetscInt p, const PetscReal n[3]);
 /* Does material point p stand at the surface of its body that looks at n, for all that it knows? What has flowed
  * may. */
 PetscBool contact_is_surface(const NodalScene *scene, PetscInt p, const PetscReal n[3]);
+/* Is it there, or behind it, as what stands beside a side that looks elsewhere is, however its body tilts? Of what has
+ * flowed nobody knows. */
+typedef enum { CONTACT_ANYWHERE, CONTACT_OUTSIDE, CONTACT_INSIDE } ContactDepth;
+ContactDepth contact_depth(const NodalScene *scene, PetscInt p, const PetscReal n[3]);
 /* Has the square of an edge's length, or the cosine of an angle, at point p changed by `limit` since the start? */
 PetscBool contact_is_strained(const Points *points, PetscInt p, PetscReal limit);
 /* How far the increments take it against its wall, or the other body, m. */

@@ -6,7 +6,8 @@
                     at is no smaller */
 #define AWAY 0.1   /* cosine: a surface that looks elsewhere, for that */
 #define ASIDE 1e-3 /* cosine: a surface that looks elsewhere */
-#define TORN 0.5   /* change of an edge's length, or of an angle, beyond which nobody knows where a surface looks */
+#define LOOKS 0.5 /* of how far the nearest side is: what stands beside one that looks at n is about as far behind it */
+#define TORN 0.5  /* change of an edge's length, or of an angle, beyond which nobody knows where a surface looks */
 
 /* Of n points of a cell the share next to one of its sides: a row of a lattice, or of the triangular
  * numbers of which rules of simplices are made (1 3 6, 1 4 10). */
@@ -106,6 +107,19 @@ static PetscBool stands_before(const NodalScene *scene, PetscInt p, const PetscR
 PetscBool contact_is_surface(const NodalScene *scene, PetscInt p, const PetscReal n[3])
 {
   return (PetscBool)(is_torn(scene, p) || contact_face(scene->points, p, n) > 0 || stands_before(scene, p, n));
+}
+
+ContactDepth contact_depth(const NodalScene *scene, PetscInt p, const PetscReal n[3])
+{
+  static const PetscReal none[3] = {0, 0, 0};
+  const Points *points = scene->points;
+  const PetscReal given = given_face(points, p), first = points->real[POINT_REACH][p];
+  PetscReal F[9];
+  if (is_torn(scene, p)) return CONTACT_ANYWHERE;
+  if (given > 0 && contact_face(points, p, n) > AWAY * given) return CONTACT_OUTSIDE;
+  point_F(points, p, F);
+  const PetscReal ahead = contact_reach(F, n, 0, point_real(points, POINT_CORNER, p), points->dim);
+  return ahead > LOOKS * contact_reach(F, n, first, none, points->dim) ? CONTACT_OUTSIDE : CONTACT_INSIDE;
 }
 
 /* A piece of matter in the section (in space: of it), of the volume of the point, and by how much more a surface of it
