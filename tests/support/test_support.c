@@ -145,7 +145,7 @@ static void clouds_follow_the_stretch(void **state)
 {
   CloudRule rule = {
     .basis = {.kind = CLOUD_LME, .gamma = 1.8}, .support = support_default_lme, .h = 1, .follows = PETSC_TRUE};
-  const PetscReal c = 0.6, s = 0.8, stretch[] = {1.2, 2, 2.9};
+  const PetscReal c = 0, s = 1, stretch[] = {1.2, 2, 2.5}; /* whose squares are sixteenths */
   PetscReal N[3][CLOUD_MAX_NODES], dN[3][2 * CLOUD_MAX_NODES];
   PetscInt n[3], node[3][CLOUD_MAX_NODES];
   (void)state;
@@ -172,6 +172,29 @@ static void clouds_follow_the_stretch(void **state)
       CHECK_CLOSE(stretch[k] * (c * is[0] + s * is[1]), 1.2 * (c * was[0] + s * was[1]), 1e-12);
       CHECK_CLOSE(c * is[1] - s * is[0], c * was[1] - s * was[0], 1e-12);
     }
+  }
+}
+
+/* A lattice that is sheared by whole spacings is the one that it was, in the plane and in space, and its cloud round;
+ * one that is drawn out as well has the map of that alone. Points whose F is a little uneven have one map. */
+static void clouds_see_the_lattice(void **state)
+{
+  static const struct {
+    PetscInt dim;
+    PetscReal F[9], longest;
+  } cases[] = {
+    {2, {1, 1, 0, 0, 1, 0, 0, 0, 1}, 1},
+    {2, {1, -3, 0, 0, 1, 0, 0, 0, 3}, 1},
+    {3, {1, 2, -1, 0, 1, 5, 0, 0, 1}, 1},
+    {2, {2, 2, 0, 0, 1, 0, 0, 0, 1}, 2 / 1.2},
+    {2, {2.001, -0.002, 0, 0.001, 0.999, 0, 0, 0, 1}, 2 / 1.2},
+    {3, {1, 0, 1, 0, 1, 0, 0, 0, 3}, 3 / 1.2},
+  };
+  (void)state;
+  for (int k = 0; k < 6; ++k) {
+    NeighboursMap room;
+    const NeighboursMap *map = cloud_stretch(cases[k].dim, cases[k].F, &room);
+    CHECK_CLOSE(map ? map->longest : 1, cases[k].longest, 0.01);
   }
 }
 
@@ -209,6 +232,7 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(clouds_turn_with_the_material),
     cmocka_unit_test(clouds_follow_the_stretch),
+    cmocka_unit_test(clouds_see_the_lattice),
     cmocka_unit_test(neighbours_by_a_map),
     cmocka_unit_test(every_cell_type),
     cmocka_unit_test(arrays_are_reused),

@@ -31,6 +31,6 @@ PetscErrorCode WarnOfStretch(const Model *m, Diag *diag)
                "%.3g %% of the material is drawn out by more than a fifth, among functions so wide that its nodes need "
                "not stay even there: forces may be too small by any part",
                (double)(100 * sum[1] / sum[0]));
-  diag_hint(diag, "`basis: {lme: {}}`, or linear mls with its own `effective_radius`, is right to a stretch of 2.5");
+  diag_hint(diag, "`basis: {lme: {}}`, or linear mls with its own `effective_radius`, is right to a stretch of 2");
   PetscFunctionReturn(0);
 }

@@ -50,7 +50,7 @@ static const SchemaEntry mls_entries[] = {
   CLOUD("; 3 for order quadratic"),
   KEY("effective_radius", NUMBER, NULL,
       "dilation of the weight function, over the cell size; 1 for order quadratic, 2 for weight cubic-spline",
-      .fallback = "0.8", ABOVE(0), AT(BasisSpec, effective_radius)),
+      .fallback = "0.75", ABOVE(0), AT(BasisSpec, effective_radius)),
   KEY("order", WORD, NULL, "polynomials that are reproduced", .words = order_words, .fallback = "linear",
       AT(BasisSpec, order)),
   KEY("weight", WORD, NULL, "weight function", .words = weight_words, .fallback = "gaussian", AT(BasisSpec, weight)),
