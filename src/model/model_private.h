@@ -303,6 +303,9 @@ PetscErrorCode JoinedBodies(const Model *model, PetscReal *of);
 /* start/unheld.c. Collective. analysis.unheld: hold: what nothing holds is told, and a mistake where the loads of the
  * first step push it. */
 PetscErrorCode UnheldCheck(Model *model, Diag *diag);
+/* Collective. Otherwise: a mistake where nothing keeps a body from turning in walls that are smooth and round, and loads
+ * leave it as it lies. What they do not hold of directions is for CheckHeld. */
+PetscErrorCode UnheldTurning(Model *model, Diag *diag);
 /* Collective. After mark_fixed, in each step: as few directions of nodes as hold it. */
 PetscErrorCode UnheldHold(Model *model);
 /* step/unheld_borne.c. Collective. Newton converged: goes on without those that keep the body from turning if they bear

@@ -63,4 +63,35 @@ says err.txt "nothing holds 'b' in y any more"
 expect "interfaces" 2 "$talus" run block.yaml --out o --force --set 'bodies[1]={name: c, shape: {box: {min: [0.013, 0.317], max: [0.413, 0.417]}}, material: r}' \
   --set 'interfaces=[{name: i, between: [b, c], contact: frictionless}]'
 says err.txt "without interfaces and walls with mass"
+
+# A disk in a smooth round wall can turn, whatever it weighs: it did, until its points were inside out, or by 47 degrees.
+cat >disk.yaml <<'EOF'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 2}
+grid: {box: {min: [-1, -1], max: [1, 1]}, size: 0.25}
+bodies: [{name: b, shape: {circle: {centre: [0.031, 0.017], radius: 0.5}}, material: r}]
+materials: {r: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
+walls: [{name: t, shape: {circle: {centre: [0.031, 0.017], radius: 0.5}}, inside: true}]
+loads: {gravity: [0, -9.81]}
+measures: {fy: {wall_force: y, of: {wall: t}}}
+output: {every: end}
+EOF
+turn
+expect "a disk in a round wall" 2 on_ranks $ranks "$talus" run disk.yaml --out o --force
+says err.txt "nothing holds 'b' from turning in its smooth round walls" "analysis: {unheld: hold}"
+expect "a ball in a round wall" 2 "$talus" run disk.yaml --out o --force --set kinematics=3d --set 'grid={box: {min: [-0.75, -0.75, -0.75], max: [0.75, 0.75, 0.75]}, size: 0.25}' \
+  --set 'bodies[0].shape={sphere: {centre: [0.031, 0.017, 0.03], radius: 0.5}}' --set 'walls[0].shape={sphere: {centre: [0.031, 0.017, 0.03], radius: 0.5}}' --set 'loads.gravity=[0, -9.81, 0]'
+says err.txt "nothing holds 'b' from turning"
+# Held from turning: by hand, by friction, by its weight as a pendulum; and what may come to hold it is as it was.
+weighs() { awk -F, -v w="$1" 'END { exit !(($3 / w - 1) ^ 2 < 1e-10) }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"; }
+expect "held by hand" 0 "$talus" run disk.yaml --out o --force --set analysis.unheld=hold
+weighs 7704.7788
+expect "held by friction" 0 "$talus" run disk.yaml --out o --force --set 'walls[0].friction=0.01'
+weighs 7704.7788
+expect "a block in a trough" 0 on_ranks $ranks "$talus" run disk.yaml --out o --force --set 'bodies[0].shape={box: {min: [-0.31, -0.4], max: [0.31, -0.1]}}' \
+  --set 'walls[0].shape={circle: {centre: [0, 0], radius: 0.5}}'
+weighs 1824.66
+expect "a floor below it" 1 "$talus" run disk.yaml --out o --force --set 'walls[1]={name: w, shape: {half-space: {point: [0, -0.7], normal: [0, 1]}}}'
+lacks err.txt "nothing holds"
 finish

@@ -1,24 +1,12 @@
 /* analysis: {unheld: hold}. Statics of bodies that something pushes but nothing holds, in some direction or from
  * turning: the answer is known but for a rigid motion, if loads are in balance along it. Nodes are held in as few
  * directions as make it the only one, which bear nothing then (docs/theory.md, section 60). */
-#include "model/model_private.h"
+#include "model/start/unheld_private.h"
 
-#define RIGID 6
 /* times the size of the body: the lever of a node that keeps it from turning, at least */
 #define LEVER 1e-6
 /* of the largest mass of a node: what has less, than a corner in space, is a poor hold */
 #define ENOUGH_MASS 0.1
-
-/* Bodies that move as one, since they touch the same nodes, and the rigid motions that are left to them. */
-typedef struct {
-  PetscInt body;                   /* the first of them */
-  const PetscReal *of;             /* n_nodes: body + 1 where they touch the node */
-  PetscReal centre[3], size, mass; /* m; half of their diagonal; the largest of a node, kg */
-  PetscReal plane[3];              /* nodes held along axis d stand at x_d = plane, if they can, m */
-  PetscBool has_plane[3];
-  PetscInt n, n_free;           /* rigid motions of these kinematics, and how many are free: */
-  PetscReal free[RIGID][RIGID]; /* orthonormal, as many along the axes and about the centre times 1 / size */
-} Group;
 
 /* A direction of a node; strength 0: there is none. */
 typedef struct {
@@ -29,10 +17,8 @@ typedef struct {
 
 static PetscInt motions_of(const Model *m) { return m->c->kinematics->hoop ? 1 : m->dim == 3 ? 6 : 3; }
 
-static PetscBool is_of(const Group *g, PetscInt node) { return g->of[node] == (PetscReal)(g->body + 1); }
-
 /* What each rigid motion moves the place x by along e. */
-static void row_at(const Model *m, const Group *g, const PetscReal *x, const PetscReal e[3], PetscReal row[RIGID])
+static void row_at(const Model *m, const UnheldGroup *g, const PetscReal *x, const PetscReal e[3], PetscReal row[RIGID])
 {
   PetscReal r[3] = {0, 0, 0};
   for (PetscInt d = 0; d < m->dim; ++d) r[d] = (x[d] - g->centre[d]) / g->size;
@@ -41,9 +27,8 @@ static void row_at(const Model *m, const Group *g, const PetscReal *x, const Pet
   for (PetscInt k = m->dim; k < g->n; ++k) row[k] = m->dim == 3 ? turns[k - 3] : turns[2];
 }
 
-/* The node, along an axis: of the frame w, NULL: of space. */
-static void row_of(const Model *m, const Group *g, PetscInt node, PetscInt axis, const PetscReal *w,
-                   PetscReal row[RIGID])
+void unheld_row(const Model *m, const UnheldGroup *g, PetscInt node, PetscInt axis, const PetscReal *w,
+                PetscReal row[RIGID])
 {
   PetscReal e[3] = {axis == 0, axis == 1, axis == 2};
   if (w) frame_turn(m->dim == 2 ? 2 : 3, w, e); /* compilers see that no more is read than is set */
@@ -51,7 +36,7 @@ static void row_of(const Model *m, const Group *g, PetscInt node, PetscInt axis,
 }
 
 /* Of the motions that are free: how far do they move it? */
-static PetscReal strength_of(const Group *g, const PetscReal row[RIGID], PetscReal along[RIGID])
+static PetscReal strength_of(const UnheldGroup *g, const PetscReal row[RIGID], PetscReal along[RIGID])
 {
   PetscReal sum = 0;
   for (PetscInt f = 0; f < g->n_free; ++f) {
@@ -63,7 +48,7 @@ static PetscReal strength_of(const Group *g, const PetscReal row[RIGID], PetscRe
 }
 
 /* What moves along `row` is free no more: a reflection of the free motions makes it the first of them. */
-static void take_away(Group *g, const PetscReal row[RIGID])
+static void take_away(UnheldGroup *g, const PetscReal row[RIGID])
 {
   PetscReal along[RIGID] = {0}, square = 0;
   const PetscReal strength = strength_of(g, row, along);
@@ -80,7 +65,7 @@ static void take_away(Group *g, const PetscReal row[RIGID])
 }
 
 /* A number that no other direction of no other node has, the same on every rank and for any number of them. */
-static PetscReal number_of(const Model *m, const Group *g, PetscInt node, PetscInt axis)
+static PetscReal number_of(const Model *m, const UnheldGroup *g, PetscInt node, PetscInt axis)
 {
   const PetscReal weight[3] = {1, 0.6180339887, 0.4142135624};
   PetscReal sum = 0.1234567 * (PetscReal)axis;
@@ -91,17 +76,17 @@ static PetscReal number_of(const Model *m, const Group *g, PetscInt node, PetscI
 /* Directions of nodes: those that are held already, all that could be, those along an axis that could be. */
 typedef enum { ALONG_X, ALONG_Y, ALONG_Z, ANY, BEFORE } Which;
 
-static PetscBool may_be(const Model *m, const Group *g, Which which, PetscInt node, PetscInt axis)
+static PetscBool may_be(const Model *m, const UnheldGroup *g, Which which, PetscInt node, PetscInt axis)
 {
   const PetscInt i = node * m->dim + axis;
-  if (!is_of(g, node)) return PETSC_FALSE;
+  if (!unheld_is_of(g, node)) return PETSC_FALSE;
   if (which == BEFORE) return m->boundary->fixed[i] != 0;
   return (which == ANY || which == (Which)axis) && !m->nodes->fixed[i] && m->nodes->dof[i] == DOF_USUAL &&
          !frame_of(&m->boundary->frames, node) && m->nodes->mass[node] >= ENOUGH_MASS * g->mass;
 }
 
 /* How much the node is worth, of 1. What strains along the axes then turns no body. */
-static PetscReal worth_of(const Model *m, const Group *g, PetscInt node, PetscInt axis)
+static PetscReal worth_of(const Model *m, const UnheldGroup *g, PetscInt node, PetscInt axis)
 {
   if (!g->has_plane[axis]) return 1;
   return 1 / (1 + 100 * PetscAbsReal(m->grid->x[node * m->dim + axis] - g->plane[axis]) / g->size);
@@ -109,13 +94,13 @@ static PetscReal worth_of(const Model *m, const Group *g, PetscInt node, PetscIn
 
 /* Of those the farthest on this rank: of the strength in pass 0; in pass 1, of equals of `farthest`, the first by its
  * number. */
-static void look_for(const Model *m, const Group *g, Which which, const PetscReal *farthest, Hold *hold)
+static void look_for(const Model *m, const UnheldGroup *g, Which which, const PetscReal *farthest, Hold *hold)
 {
   PetscReal row[RIGID], along[RIGID];
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
     const PetscInt node = i / m->dim, axis = i % m->dim;
     if (!may_be(m, g, which, node, axis)) continue;
-    row_of(m, g, node, axis, frame_of(&m->boundary->frames, node), row);
+    unheld_row(m, g, node, axis, frame_of(&m->boundary->frames, node), row);
     const PetscReal far = strength_of(g, row, along) * (which == BEFORE ? 1 : worth_of(m, g, node, axis));
     const PetscReal number = number_of(m, g, node, axis);
     if (!farthest) hold->strength = PetscMax(hold->strength, far);
@@ -128,7 +113,7 @@ static void look_for(const Model *m, const Group *g, Which which, const PetscRea
 }
 
 /* The one of all ranks. */
-static PetscErrorCode Strongest(const Model *m, const Group *g, Which which, Hold *hold)
+static PetscErrorCode Strongest(const Model *m, const UnheldGroup *g, Which which, Hold *hold)
 {
   PetscReal farthest, least, all[RIGID + 4] = {0}, along[RIGID];
 
@@ -152,47 +137,47 @@ static PetscErrorCode Strongest(const Model *m, const Group *g, Which which, Hol
 }
 
 /* Is it this one, on a rank that may not own it? */
-static PetscBool is_hold(const Model *m, const Group *g, const Hold *hold, PetscInt node, PetscInt axis)
+static PetscBool is_hold(const Model *m, const UnheldGroup *g, const Hold *hold, PetscInt node, PetscInt axis)
 {
   PetscReal apart = 0;
   for (PetscInt d = 0; d < m->dim; ++d)
     apart = PetscMax(apart, PetscAbsReal(m->grid->x[node * m->dim + d] - hold->at[d]) / g->size);
-  return is_of(g, node) && axis == hold->axis && apart < 1e-9;
+  return unheld_is_of(g, node) && axis == hold->axis && apart < 1e-9;
 }
 
 /* It holds. */
-static void count_in(Group *g, const Hold *hold)
+static void count_in(UnheldGroup *g, const Hold *hold)
 {
   if (!g->has_plane[hold->axis]) g->plane[hold->axis] = hold->at[hold->axis];
   g->has_plane[hold->axis] = PETSC_TRUE;
   take_away(g, hold->row);
 }
 
-/* Squares of what motions move contact points by where walls hold them: against the wall, and along it if it rubs. */
-static void add_walls(const Model *m, const Group *g, PetscReal *sum)
+void unheld_add_place(const Model *m, const UnheldGroup *g, const PetscReal *x, const PetscReal normal[3],
+                      PetscBool rubs, PetscReal *sum)
 {
-  const Contact *s = m->contact;
-  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (!contact_touched(c) || !is_of(g, s->node[c->first])) continue;
-    for (PetscInt d = 0; d < m->dim; ++d) {
-      const PetscBool rubs = c->law.kind != CONTACT_FRICTIONLESS;
-      const PetscReal axis[3] = {d == 0, d == 1, d == 2};
-      PetscReal row[RIGID] = {0};
-      if (!rubs && d > 0) break;
-      row_at(m, g, c->x, rubs ? axis : c->normal, row);
-      for (PetscInt k = 0; k < g->n * g->n; ++k) sum[k] += row[k / g->n] * row[k % g->n];
-    }
+  for (PetscInt d = 0; d < (rubs ? m->dim : 1); ++d) {
+    const PetscReal axis[3] = {d == 0, d == 1, d == 2};
+    PetscReal row[RIGID] = {0};
+    row_at(m, g, x, rubs ? axis : normal, row);
+    for (PetscInt k = 0; k < g->n * g->n; ++k) sum[k] += row[k / g->n] * row[k % g->n];
   }
 }
 
-/* What walls hold that it touches is not free, as long as they push. */
-static PetscErrorCode WallsHold(const Model *m, Group *g)
+/* Of what touches walls. */
+static void add_walls(const Model *m, const UnheldGroup *g, PetscReal *sum)
 {
-  PetscReal sum[RIGID * RIGID] = {0}, trace = 0;
+  const Contact *s = m->contact;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
+    if (contact_touched(c) && unheld_is_of(g, s->node[c->first]))
+      unheld_add_place(m, g, c->x, c->normal, c->law.kind != CONTACT_FRICTIONLESS, sum);
+}
+
+PetscErrorCode UnheldTake(const Model *m, UnheldGroup *g, PetscReal *sum)
+{
+  PetscReal trace = 0;
 
   PetscFunctionBeginUser;
-  if (!m->contact) PetscFunctionReturn(0);
-  add_walls(m, g, sum);
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, (PetscMPIInt)(g->n * g->n), MPIU_REAL, MPIU_SUM, m->comm));
   for (PetscInt k = 0; k < g->n; ++k) trace += sum[k * (g->n + 1)];
   while (g->n_free) {
@@ -211,8 +196,20 @@ static PetscErrorCode WallsHold(const Model *m, Group *g)
   PetscFunctionReturn(0);
 }
 
+/* What walls hold that it touches is not free, as long as they push. */
+static PetscErrorCode WallsHold(const Model *m, UnheldGroup *g)
+{
+  PetscReal sum[RIGID * RIGID] = {0};
+
+  PetscFunctionBeginUser;
+  if (!m->contact) PetscFunctionReturn(0);
+  add_walls(m, g, sum);
+  PetscCall(UnheldTake(m, g, sum));
+  PetscFunctionReturn(0);
+}
+
 /* Where the group is, and which motions are left to it by what is prescribed. *any: does it touch a node? */
-static PetscErrorCode GroupLook(const Model *m, Group *g, PetscBool *any)
+static PetscErrorCode GroupLook(const Model *m, UnheldGroup *g, PetscBool *any)
 {
   PetscReal bounds[7], square = 0;
   Hold hold;
@@ -220,7 +217,7 @@ static PetscErrorCode GroupLook(const Model *m, Group *g, PetscBool *any)
   PetscFunctionBeginUser;
   for (int k = 0; k < 7; ++k) bounds[k] = k < 6 ? PETSC_MIN_REAL : 0;
   for (PetscInt node = 0; node < m->grid->n_owned; ++node) {
-    if (!is_of(g, node)) continue;
+    if (!unheld_is_of(g, node)) continue;
     for (PetscInt d = 0; d < m->dim; ++d) {
       bounds[d] = PetscMax(bounds[d], m->grid->x[node * m->dim + d]);
       bounds[3 + d] = PetscMax(bounds[3 + d], -m->grid->x[node * m->dim + d]);
@@ -248,7 +245,7 @@ static PetscErrorCode GroupLook(const Model *m, Group *g, PetscBool *any)
 }
 
 /* Hold one more direction of a node, on every rank that knows it. */
-static PetscErrorCode HoldOne(Model *m, Group *g, Which which)
+static PetscErrorCode HoldOne(Model *m, UnheldGroup *g, Which which)
 {
   Hold hold;
 
@@ -266,8 +263,7 @@ static PetscErrorCode HoldOne(Model *m, Group *g, Which which)
   PetscFunctionReturn(0);
 }
 
-/* Calls back for each group, in the order of their bodies. */
-static PetscErrorCode EachGroup(Model *m, Diag *diag, PetscErrorCode (*visit)(Model *m, Group *g, Diag *diag))
+PetscErrorCode UnheldEach(Model *m, Diag *diag, PetscErrorCode (*visit)(Model *m, UnheldGroup *g, Diag *diag))
 {
   PetscReal *of;
   PetscBool any = PETSC_FALSE;
@@ -276,7 +272,7 @@ static PetscErrorCode EachGroup(Model *m, Diag *diag, PetscErrorCode (*visit)(Mo
   PetscCall(PetscCalloc1(m->grid->n_nodes, &of));
   PetscCall(JoinedBodies(m, of));
   for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
-    Group g = {.body = b, .of = of};
+    UnheldGroup g = {.body = b, .of = of};
     PetscCall(GroupLook(m, &g, &any));
     if (any && g.n_free) PetscCall((*visit)(m, &g, diag));
   }
@@ -285,7 +281,7 @@ static PetscErrorCode EachGroup(Model *m, Diag *diag, PetscErrorCode (*visit)(Mo
 }
 
 /* "in x and y, and from turning" */
-static void name_free(const Model *m, const Group *g, char text[64])
+static void name_free(const Model *m, const UnheldGroup *g, char text[64])
 {
   const PetscInt lines = PetscMin(m->dim, g->n);
   PetscReal along[RIGID];
@@ -307,7 +303,7 @@ static void name_free(const Model *m, const Group *g, char text[64])
 }
 
 /* Along which axes; of rings that is y. */
-static void note_free(Model *m, const Group *g)
+static void note_free(Model *m, const UnheldGroup *g)
 {
   PetscReal along[RIGID];
   for (PetscInt k = 0; k < PetscMin(m->dim, g->n); ++k) {
@@ -318,7 +314,7 @@ static void note_free(Model *m, const Group *g)
 }
 
 /* Work of the loads of the first step along its free motions. */
-static PetscErrorCode CheckGroup(Model *m, Group *g, Diag *diag)
+static PetscErrorCode CheckGroup(Model *m, UnheldGroup *g, Diag *diag)
 {
   PetscReal sums[RIGID + 1] = {0}, row[RIGID], pull[3], most = 0;
   char text[64], path[64];
@@ -326,9 +322,9 @@ static PetscErrorCode CheckGroup(Model *m, Group *g, Diag *diag)
   PetscFunctionBeginUser;
   gravity_at(m->c, raised_time(m, m->time + m->c->analysis.step), pull);
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
-    if (!is_of(g, i / m->dim)) continue;
-    const PetscReal force = m->nodes->external[i] + m->nodes->mass[i / m->dim] * pull[i % m->dim];
-    row_of(m, g, i / m->dim, i % m->dim, NULL, row);
+    if (!unheld_is_of(g, i / m->dim)) continue;
+    const PetscReal force = unheld_load(m, pull, i);
+    unheld_row(m, g, i / m->dim, i % m->dim, NULL, row);
     for (PetscInt f = 0; f < g->n_free; ++f)
       for (PetscInt k = 0; k < g->n; ++k) sums[f] += g->free[f][k] * row[k] * force;
     sums[RIGID] += PetscAbsReal(force);
@@ -364,12 +360,12 @@ PetscErrorCode UnheldCheck(Model *m, Diag *diag)
   PetscCall(PetscMalloc2(RIGID * m->c->n_bodies, &m->unheld.dof, RIGID * m->c->n_bodies, &m->unheld.turns));
   PetscCall(NodalForcesBegin(&m->forces, &scene));
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, m->nodes->external));
-  PetscCall(EachGroup(m, diag, CheckGroup));
+  PetscCall(UnheldEach(m, diag, CheckGroup));
   PetscFunctionReturn(0);
 }
 
 /* Where it is, and then how it is turned: the latter can be let go. */
-static PetscErrorCode HoldGroup(Model *m, Group *g, Diag *diag)
+static PetscErrorCode HoldGroup(Model *m, UnheldGroup *g, Diag *diag)
 {
   PetscReal along[RIGID];
 
@@ -390,6 +386,6 @@ PetscErrorCode UnheldHold(Model *m)
   PetscFunctionBeginUser;
   m->unheld.n = m->unheld.turning = 0;
   m->unheld.size = 0;
-  if (m->c->analysis.unheld == UNHELD_HOLD) PetscCall(EachGroup(m, NULL, HoldGroup));
+  if (m->c->analysis.unheld == UNHELD_HOLD) PetscCall(UnheldEach(m, NULL, HoldGroup));
   PetscFunctionReturn(0);
 }

@@ -175,6 +175,7 @@ PetscErrorCode CheckHeld(Model *m, Diag *diag)
   PetscCall(ModelCountPoints(m, &points));
   if ((m->scheme->inertia && !case_equilibrates(m->c)) || !points) PetscFunctionReturn(0);
   PetscCall(TellLoose(m, PETSC_FALSE, diag));
+  PetscCall(UnheldTurning(m, diag));
   PetscCall(AdviseRests(m, diag));
   PetscFunctionReturn(0);
 }

@@ -1,0 +1,38 @@
+/* Rigid motions that nothing holds, for start/unheld.c and start/turning.c. */
+#pragma once
+#include "model/model_private.h"
+
+#define RIGID 6
+
+/* Bodies that move as one, since they touch the same nodes, and the rigid motions that are left to them. */
+typedef struct {
+  PetscInt body;                   /* the first of them */
+  const PetscReal *of;             /* n_nodes: body + 1 where they touch the node */
+  PetscReal centre[3], size, mass; /* m; half of their diagonal; the largest of a node, kg */
+  PetscReal plane[3];              /* nodes held along axis d stand at x_d = plane, if they can, m */
+  PetscBool has_plane[3];
+  PetscInt n, n_free;           /* rigid motions of these kinematics, and how many are free: */
+  PetscReal free[RIGID][RIGID]; /* orthonormal, as many along the axes and about the centre times 1 / size */
+} UnheldGroup;
+
+static inline PetscBool unheld_is_of(const UnheldGroup *g, PetscInt node)
+{
+  return (PetscBool)(g->of[node] == (PetscReal)(g->body + 1));
+}
+
+/* What each rigid motion moves the node by along an axis: of the frame w, NULL: of space. */
+void unheld_row(const Model *model, const UnheldGroup *g, PetscInt node, PetscInt axis, const PetscReal *w,
+                PetscReal row[RIGID]);
+/* Adds to sum (n x n) squares of what motions move a place of a wall by where that holds it: against the wall, and along
+ * it if it rubs. */
+void unheld_add_place(const Model *model, const UnheldGroup *g, const PetscReal *x, const PetscReal normal[3],
+                      PetscBool rubs, PetscReal *sum);
+/* Collective. What such a sum, of this rank, holds is not free. */
+PetscErrorCode UnheldTake(const Model *model, UnheldGroup *g, PetscReal *sum);
+/* Collective. Calls back for each group that has a motion free, in the order of their bodies. */
+PetscErrorCode UnheldEach(Model *model, Diag *diag, PetscErrorCode (*visit)(Model *model, UnheldGroup *g, Diag *diag));
+/* What loads and gravity push component i of the nodes with, N: m->nodes->external is known. */
+static inline PetscReal unheld_load(const Model *m, const PetscReal gravity[3], PetscInt i)
+{
+  return m->nodes->external[i] + m->nodes->mass[i / m->dim] * gravity[i % m->dim];
+}
