@@ -350,8 +350,11 @@ int TalusModelDestroy(TalusModel **model);
 /**
  * @brief Add a body force to gravity, from the next step on. Collective.
  *
- * It is called for every material point with the time at the end of the step, once for every try of
- * a step. Set before the first step of a dynamic case it also enters the initial acceleration.
+ * It is called for every material point with the time of the balance that is solved: the middle of the
+ * step with the midpoint scheme, the start of each substep in explicit dynamics, else the end of the
+ * step. Calls for what a step begins with come besides, and each try of a step has its own. Set before
+ * the first step of a dynamic case it also enters the initial acceleration. X and x are not there any
+ * more when the function has returned.
  * @param model    the model
  * @param force    the function, called on every rank for its points, or NULL for none
  * @param context  handed to it

@@ -13,11 +13,33 @@ def _view(pointer, n):
     return np.ctypeslib.as_array(pointer, (n, 3)) if n else np.zeros((0, 3))
 
 
+def _places(pointer, n, least=0):
+    """The same as an array of the function's own: the library frees or reuses its numbers, a function may keep or
+    change them. The last place is repeated until there are as many as `least`."""
+    places = _view(pointer, n).copy()
+    return np.concatenate([places, np.repeat(places[-1:], least - n, axis=0)]) if 0 < n < least else places
+
+
 def _numbers(what, answer):
     """What a function has returned, as an array."""
     if answer is None:
         raise TalusError(f"the function of {what} returned None: a `return` is missing")
     return np.asarray(answer, dtype=float)
+
+
+_UNLIKE_VECTORS = 4  # places: numbers for so many are no vector
+
+
+def _of_places(factor, n):
+    """Factors of n places as (n, 1), (n, 2), (n, 3), (1, 2), (1, 3) or one number. One vector is refused: with two or
+    three places it could be a number for each."""
+    if factor.ndim == 1 and factor.shape == (n,):
+        return factor[:, None]
+    if factor.ndim == 1 and factor.size > 1:
+        raise TalusError(f"the function of a load returned {factor.size} numbers for {n} places: it returns a number "
+                         "for each place, (n,), or factors of the components, (n, 2) or (n, 3); those of all places "
+                         "alike are [[1, 0]]")
+    return factor
 
 
 class Callbacks:
@@ -53,7 +75,7 @@ class Callbacks:
 
         def ask(_, n, X, x, t, b):
             def force_of(wanted):
-                force = _numbers("body_force", function(_view(X, n), _view(x, n), t))
+                force = _numbers("body_force", function(_places(X, n), _places(x, n), t))
                 wanted[:, :force.shape[-1] if force.ndim else 3] = force
 
             self._fill(_view(b, n), force_of)
@@ -66,10 +88,12 @@ class Callbacks:
             return self._types["TalusLoadFactors"]()
 
         def ask(_, n, X, x, t, f):
+            # of two or three places a number for each looks like one vector: such a function is asked of four
+            m = _UNLIKE_VECTORS if 1 < n < _UNLIKE_VECTORS else n
+
             def factor_of(wanted):
-                factor = _numbers("a load", function(_view(X, n), _view(x, n), t))
-                if factor.ndim == 1 and factor.shape == (n,):
-                    factor = factor[:, None]  # a number for each place, not for each component
+                factor = _of_places(_numbers("a load", function(_places(X, n, m), _places(x, n, m), t)), m)
+                factor = factor[:n] if factor.ndim == 2 and len(factor) == m else factor
                 wanted[:, :factor.shape[-1] if factor.ndim and factor.shape[-1] > 1 else 3] = factor
 
             self._fill(_view(f, n), factor_of)

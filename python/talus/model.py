@@ -169,8 +169,12 @@ class Model:
         """A force per mass besides gravity, m/s2, or None: a function of (X, x, t).
 
         X and x are where the points of this rank were at the start of the model and are at the start of the
-        step, m, both (n, 3), with zeros as the third column in the plane; t is the end of the step, s. It
-        returns what can be put into (n, 3) or (n, 2). It is called for every try of a step.
+        step, m, both (n, 3), with zeros as the third column in the plane: the function's own, to keep or to change.
+        t is the time of the balance that is solved, s: the middle of the step with the midpoint scheme (the default
+        of elastic bodies with gimp and splines), the start of each substep in explicit dynamics, else the end of the
+        step. Calls for what a step begins or ends with come besides, and each try of a step has its own: let the
+        answer depend on X, x and t alone. It returns one vector for all points, or what can be put into (n, 3) or
+        (n, 2).
 
         >>> with talus.Case(block).model() as model:
         ...     model.body_force = lambda X, x, t: [3 * t, 0]
@@ -197,9 +201,10 @@ class Model:
         time: a function of (X, x, t), or None. Collective.
 
         X and x are places on the loaded surface, of this rank, as undeformed and as the step begins, m, both (n, 3),
-        with zeros as the third column in the plane; t is the end of the step, s. What it returns multiplies the
-        load's `value` and `amplitude`: a number for each place, (n,), or factors of its components, (n, 3) or
-        (n, 2). With a value of 1 it is the load itself: N/m2 of undeformed surface for tractions, Pa of the
+        with zeros as the third column in the plane; they and t are as for `body_force`. What it returns multiplies
+        the load's `value` and `amplitude`: a number for each place, (n,), or factors of its components, (n, 3) or
+        (n, 2); of all places alike, a number or [[fx, fy]]. One vector, [fx, fy], is refused, since of two places it
+        would be a number for each; of two or three places the last is asked for again, up to four. With a value of 1 it is the load itself: N/m2 of undeformed surface for tractions, Pa of the
         present one, along its normal, for pressures.
 
         >>> case = talus.Case(block)

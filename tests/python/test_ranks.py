@@ -46,6 +46,24 @@ class Ranks(unittest.TestCase):
         self.assertEqual(final(case)[-1], 10 if rank % 2 else 5)
         half.Free()
 
+    def test_a_load_on_few_places_of_each_rank(self):
+        """Two faces each: a number for each place, and none for a vector."""
+        case = talus.Case({"kinematics": "plane-strain", "method": "fem", "analysis": {"type": "dynamic", "end": 0.01, "step": 0.005},
+                           "grid": {"box": {"min": [0, 0], "max": [1, 1]}, "counts": [4, 4]},
+                           "bodies": [{"name": "b", "shape": {"box": {"min": [0, 0], "max": [1, 1]}}, "material": "m"}],
+                           "materials": {"m": {"law": "neo-hookean", "density": 1000, "young": 1e5, "poisson": 0.3}},
+                           "loads": {"tractions": [{"on": {"y": 0}, "value": [100, 100]}]}})
+        for factors in (lambda X: 2 * X[:, 0], lambda X: [[1, 1]]):
+            case.loads["tractions[0]"] = lambda X, x, t: factors(X)
+            with case.model() as model:
+                while model.step():
+                    pass
+                momentum = (model.points["mass"][:, None] * model.points["velocity"]).sum(axis=0)
+            np.testing.assert_allclose(MPI.COMM_WORLD.allreduce(momentum), [1, 1], atol=1e-8)
+        case.loads["tractions[0]"] = lambda X, x, t: [1, 0]
+        with self.assertRaisesRegex(talus.TalusError, "2 numbers for"), case.model() as model:
+            model.step()
+
     def test_forces_are_asked_on_every_rank(self):
         case = talus.Case(BLOCK)
         case["loads.gravity"] = [0, 0]

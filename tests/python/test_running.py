@@ -403,10 +403,67 @@ class Stepping(InFolder):
             with self.assertRaisesRegex(KeyError, r"no load 'pressures\[1\]'"):
                 model.vary("pressures[1]", None)
             model.vary("tractions[0]", lambda X, x, t: [1, 2, 3, 4])
-            with self.assertRaisesRegex(ValueError, "broadcast"):
+            with self.assertRaisesRegex(talus.TalusError, "4 numbers for 16 places"):
                 model.step(0.002)
         # Its value again, 1 N/m2 upward: half of the first step is still the function's.
         self.assertAlmostEqual(before[1] - found[1], 0.001 * (1 - square) + 0.002, delta=1e-6 * 0.002)
+
+    def test_a_load_on_few_places(self):
+        """fem asks of one place for each face. A vector for all of them is no number for each, however many there are."""
+        for n in (1, 2, 3, 4):
+            case = talus.Case({"kinematics": "plane-strain", "method": "fem", "analysis": {"type": "dynamic", "end": 0.01, "step": 0.005},
+                               "grid": {"box": {"min": [0, 0], "max": [1, 1]}, "counts": [n, n]},
+                               "bodies": [{"name": "block", "shape": {"box": {"min": [0, 0], "max": [1, 1]}}, "material": "rubber"}],
+                               "materials": {"rubber": {"law": "neo-hookean", "density": 1000, "young": 1e5, "poisson": 0.3}},
+                               "loads": {"tractions": [{"on": {"x": 0}, "value": [100, 100]}]}})
+            for vector in ([1, 0], [1, 0, 0]):
+                case.loads["tractions[0]"] = lambda X, x, t: vector
+                with self.assertRaisesRegex(talus.TalusError, r"numbers for . places.*\[\[1, 0\]\]"):
+                    case.run("few", force=True)
+            for factors, wanted in ((lambda X: [[1, 0]], [1, 0]), (lambda X: np.ones(len(X)), [1, 1]), (lambda X: 1, [1, 1]),
+                                    (lambda X: np.tile([0, 1], (len(X), 1)), [0, 1]),
+                                    (lambda X: 2 * X[:, 1], [1, 1]), (lambda X: 2 * X[:, 1:2], [1, 1])):
+                case.loads["tractions[0]"] = lambda X, x, t: factors(X)
+                with case.model() as model:
+                    while model.step():
+                        pass
+                    momentum = (model.points["mass"][:, None] * model.points["velocity"]).sum(axis=0)
+                np.testing.assert_allclose(momentum, np.array(wanted) * 100 * 0.01, atol=1e-8)
+
+    def test_places_are_the_functions_own(self):
+        """Kept, they stay what they were; changed, they change nothing."""
+        case = block(**{"loads": {"gravity": [0, 0], "tractions": [{"on": {"body": "block", "y": 1}, "value": [0, 1]}]}})
+        kept = []
+
+        def force(X, x, t):
+            kept.append((X, x, X.copy(), x.copy()))
+            return [0, -9.81]
+
+        def spoil(X, x, t):
+            answer = X[:, 0] + x[:, 1]
+            X -= 1
+            x += 1
+            return answer
+
+        found = []
+        for load in (lambda X, x, t: X[:, 0] + x[:, 1], spoil):
+            case.body_force, case.loads["tractions[0]"] = force, load
+            found.append(case.run("own", force=True).history["top"])
+        np.testing.assert_array_equal(*found)
+        for X, x, X_then, x_then in kept:
+            np.testing.assert_array_equal(X, X_then)
+            np.testing.assert_array_equal(x, x_then)
+
+    def test_the_time_of_a_function(self):
+        """That of the balance: the middle of a step, its end, or the start of a substep."""
+        explicit = {"type": "explicit", "end": 0.01, "step": 0.0002}
+        for changes, times in (({"analysis.transfer": "consistent"}, {0.5}), ({}, {0, 1}), ({"analysis": explicit}, {0, 1})):
+            asked, case = set(), block(**changes)
+            with case.model() as model:
+                model.body_force = lambda X, x, t: (asked.add(t), [0, 0])[1]
+                asked.clear()  # that was for the acceleration at the start
+                model.step()
+                self.assertEqual({round(t / model.time, 9) for t in asked}, times)
 
     def test_loads_act_in_runs(self):
         case = block(**{"loads": {"gravity": [0, 0], "tractions": [{"on": {"body": "block", "y": 1}, "value": [0, -500]}]}})
