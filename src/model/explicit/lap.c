@@ -14,12 +14,14 @@
 static PetscBool is_smooth(const Model *m) { return m->dim == 2 && m->space->basis == basis_find("gimp"); }
 
 /* Does anything act that asks for the nodes of all points? Walls ask for those near them, and carriers of loads look
- * for their own; loads on sides of cells want to know which of these are filled. */
+ * for their own; loads on sides of cells want to know which of these are filled. What rests is of implicit steps alone:
+ * a model of those is asked, too, what explicit ones would cost. */
 static PetscBool asks_for_all(const Model *m)
 {
   for (PetscInt i = 0; i < m->forces.n; ++i) {
     const NodalForce *kind = m->forces.one[i].kind;
-    if (m->forces.one[i].data != m->contact && kind != &nodal_force_loads && kind != &nodal_force_pressures)
+    if (m->forces.one[i].data != m->contact && kind != &nodal_force_loads && kind != &nodal_force_pressures &&
+        kind != &nodal_force_rest)
       return PETSC_TRUE;
   }
   for (PetscInt k = 0; k < m->c->n_loads; ++k)

@@ -1,5 +1,6 @@
-/* Statics of bodies in smooth walls that are round about one axis: nothing holds the turn about it, while every direction
- * is held (advice/held.c). What is known of motions and holds is that of unheld.c (docs/theory.md, section 60). */
+/* Statics of bodies in smooth walls that are round about one axis: nothing holds the turn about it, while every
+ * direction is held (advice/held.c). What is known of motions and holds is that of unheld.c (docs/theory.md,
+ * section 60). */
 #include "model/start/unheld_private.h"
 
 /* As much of all loads at the size of the body neither pushes it nor brings it back. */

@@ -23,8 +23,8 @@ static inline PetscBool unheld_is_of(const UnheldGroup *g, PetscInt node)
 /* What each rigid motion moves the node by along an axis: of the frame w, NULL: of space. */
 void unheld_row(const Model *model, const UnheldGroup *g, PetscInt node, PetscInt axis, const PetscReal *w,
                 PetscReal row[RIGID]);
-/* Adds to sum (n x n) squares of what motions move a place of a wall by where that holds it: against the wall, and along
- * it if it rubs. */
+/* Adds to sum (n x n) squares of what motions move a place of a wall by where that holds it: against the wall, and
+ * along it if it rubs. */
 void unheld_add_place(const Model *model, const UnheldGroup *g, const PetscReal *x, const PetscReal normal[3],
                       PetscBool rubs, PetscReal *sum);
 /* Collective. What such a sum, of this rank, holds is not free. */

@@ -143,8 +143,46 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
 #define MULTIGRID 0.7 /* of the matrix, measured */
 /* Program and libraries, a rank. */
 #define PROGRAM 45e6
+/* A node's fields. */
+#define NODE 600
 
-static PetscReal solver_memory(const Model *m, PetscInt unknowns, PetscReal matrix)
+/* Lists that grow have as much room to spare. */
+#define ROOM 1.25
+
+/* Nodes that a point with a domain comes to see, and their square: along each axis three of splines; of gimp two, or
+ * three where its domain, half a cell as a rule, lies across a line. */
+static PetscReal nodes_of_domain(const Model *m, int power)
+{
+  const PetscReal across = m->space->basis == basis_find("gimp") ? 0.5 : 1;
+  const PetscReal mean = power == 1 ? 2 + across : 4 + 5 * across;
+  return m->dim == 3 ? mean * mean * mean : mean * mean;
+}
+
+/* What points see: numbers of nodes, N and dN, and where the pairs of these stand in the tangent; over all ranks.
+ * Points with domains come to have nodes of their own, though many share them as they are seeded. */
+static PetscErrorCode SupportMemory(const Model *m, PetscInt points, PetscReal *seen, PetscReal *pairs)
+{
+  const Support *w = m->space->support;
+  PetscReal sums[3] = {0, 0, 0};
+
+  PetscFunctionBeginUser;
+  for (PetscInt g = 0; g < w->n_groups; ++g) {
+    const PetscReal nn = (PetscReal)support_nodes(w, g);
+    sums[0] += nn * (PetscReal)(w->point_start[g + 1] - w->point_start[g]);
+    sums[1] += nn;
+    sums[2] += nn * nn;
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPI_SUM, m->comm));
+  for (int k = 0; m->space->basis->domains && k < 3; ++k)
+    sums[k] = PetscMax(sums[k], (PetscReal)points * nodes_of_domain(m, k < 2 ? 1 : 2));
+  *seen = ROOM * (8 * (PetscReal)(1 + m->dim) * sums[0] + 4 * sums[1]);
+  *pairs = ROOM * 4 * sums[2];
+  PetscFunctionReturn(0);
+}
+
+/* Bytes of a tangent and what solves with it. In dynamics blocks stand in single precision twice, as they are gathered
+ * and as rows have them, and for a while as they are; else PETSc has its own beside ours, or a coarse level does. */
+static PetscReal tangent_memory(const Model *m, PetscInt unknowns, PetscInt pairs)
 {
   const LinearProblem problem = {.choice = m->c->linear,
                                  .dim = m->dim,
@@ -154,26 +192,27 @@ static PetscReal solver_memory(const Model *m, PetscInt unknowns, PetscReal matr
                                  .levels = coarse_box_fits(m->grid),
                                  .mixed = m->formulation->pressure,
                                  .memory = m->machine_memory};
-  if (m->scheme->inertia) return 0;
-  if (!linear_factorises(&problem)) return MULTIGRID * matrix;
-  return linear_factor_bytes(&problem);
+  const PetscReal block = (PetscReal)m->system->block,
+                  value = m->scheme->inertia && !problem.mixed ? 8 + 4 + 4 : 8 + 8 + 4,
+                  matrix = (PetscReal)pairs * (block * block * value + 12);
+  if (m->scheme->inertia) return matrix;
+  return matrix + (linear_factorises(&problem) ? linear_factor_bytes(&problem) : MULTIGRID * matrix);
 }
 
-/* Bytes, roughly: points, support, matrix, and its solver. */
-static PetscReal estimated_memory(const Model *m, PetscInt points, PetscInt unknowns, PetscInt pairs)
+/* Bytes, roughly: points, what they see, nodes, and where a step is solved for the tangent and its solver. */
+static PetscErrorCode EstimateMemory(const Model *m, PetscInt points, PetscInt unknowns, PetscInt pairs,
+                                     PetscReal *needed)
 {
-  const PetscInt most = m->space->basis->domains ? m->dim == 2 ? 9 : 27 : m->grid->nodes_per_cell;
-  const PetscReal dim = (PetscReal)m->dim, nn = m->grid->cloud ? 14 : (PetscReal)most,
-                  block = (PetscReal)m->system->block;
-  PetscReal per_point = 24 + 8 * nn * (1 + dim);
-  for (PetscInt f = 0; f < POINT_N_REAL; ++f) per_point += 8 * (PetscReal)m->points->components[f];
-  const PetscReal value =
-    m->scheme->inertia && !m->formulation->pressure ? 8 + 4 : 8 + 8 + 4; /* blocks in single precision, or PETSc's */
-  const PetscReal matrix = (PetscReal)pairs * (block * block * value + 12);
+  PetscReal per_point = 24, seen = 0, slots = 0;
   PetscMPIInt ranks;
-  MPI_Comm_size(m->comm, &ranks);
-  return PROGRAM * ranks + (PetscReal)points * per_point + matrix + solver_memory(m, unknowns, matrix) +
-         120 * (PetscReal)m->grid->n_nodes_global;
+
+  PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Comm_size(m->comm, &ranks));
+  PetscCall(SupportMemory(m, points, &seen, &slots));
+  for (PetscInt f = 0; f < POINT_N_REAL; ++f) per_point += 8 * (PetscReal)m->points->components[f];
+  *needed = PROGRAM * ranks + (PetscReal)points * per_point + seen + NODE * (PetscReal)m->grid->n_nodes_global;
+  if (m->c->analysis.type != ANALYSIS_EXPLICIT) *needed += slots + tangent_memory(m, unknowns, pairs);
+  PetscFunctionReturn(0);
 }
 
 static void report_memory(const Model *m, PetscReal needed, Diag *diag, FILE *out)
@@ -199,8 +238,15 @@ static PetscErrorCode ReportClouds(const Model *m, FILE *out)
   PetscFunctionReturn(0);
 }
 
-/* Substeps that cost as much as an implicit step of the same model (docs/decisions.md [249]). */
-static PetscInt substeps_of_a_step(const Model *m) { return explicit_by_arithmetic(m) ? 15 : 5; }
+/* Substeps that cost as much as an implicit step of the same model, whichever of both the case has (docs/decisions.md
+ * [371]). */
+static PetscReal substeps_of_a_step(const Model *m) { return m->dim == 3 ? 10 : explicit_by_arithmetic(m) ? 15 : 6; }
+
+/* Known to a factor of two: how many iterations a step takes only its run knows. */
+static const char *price_of(PetscReal share)
+{
+  return share > 2 ? "dearer than" : share < 0.5 ? "cheaper than" : "about as dear as";
+}
 
 /* What explicit dynamics takes, or would, and whether that is cheaper. */
 static PetscErrorCode ReportSubsteps(const Model *m, FILE *out)
@@ -212,9 +258,9 @@ static PetscErrorCode ReportSubsteps(const Model *m, FILE *out)
   if (!m->scheme->inertia || !m->method->restores_grid || m->formulation->pressure) PetscFunctionReturn(0);
   PetscCall(ExplicitCritical(m, &critical, &crossing, &fastest));
   const PetscReal substep = case_courant(&m->c->analysis) * critical, n = PetscCeilReal(m->control.next / substep);
-  say(m, out, "#   explicit: %.3g s a substep, %.0f %s in a step of %g s: %s than an implicit step\n", (double)substep,
+  say(m, out, "#   explicit: %.3g s a substep, %.0f %s in a step of %g s: %s an implicit step\n", (double)substep,
       (double)n, explicit ? "of them" : "with `type: explicit`", (double)m->control.next,
-      n <= (PetscReal)substeps_of_a_step(m) ? "cheaper" : "dearer");
+      price_of(n / substeps_of_a_step(m)));
   PetscFunctionReturn(0);
 }
 
@@ -253,6 +299,7 @@ static void report_waves(const Model *m, FILE *out)
 static PetscErrorCode ReportSizes(Model *m, Diag *diag, FILE *out)
 {
   PetscInt points, pairs, all_pairs;
+  PetscReal needed = 0;
   char from[80], to[80], told[256];
 
   PetscFunctionBeginUser;
@@ -271,7 +318,8 @@ static PetscErrorCode ReportSizes(Model *m, Diag *diag, FILE *out)
   if (method_tell_transfer(m->method, m->c, sizeof told, told)) say(m, out, "#   transfer: %s\n", told);
   report_followers(m, out);
   say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
-  report_memory(m, estimated_memory(m, points, unknowns, all_pairs), diag, out);
+  PetscCall(EstimateMemory(m, points, unknowns, all_pairs, &needed));
+  report_memory(m, needed, diag, out);
   if (m->scheme->inertia) report_waves(m, out);
   PetscCall(ReportSubsteps(m, out));
   PetscFunctionReturn(0);

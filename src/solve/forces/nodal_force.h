@@ -93,7 +93,7 @@ typedef struct {
 } NodalForce;
 
 extern const NodalForce *const nodal_forces[]; /* ended by NULL */
-extern const NodalForce nodal_force_loads, nodal_force_pressures;
+extern const NodalForce nodal_force_loads, nodal_force_pressures, nodal_force_rest;
 
 /* Slots (n x n) of the pairs of n local nodes; PETSC_FALSE if the pattern lacks any. */
 static inline PetscBool nodal_find_slots(const System *system, PetscInt n, const PetscInt *node, PetscInt *slot)
