@@ -296,15 +296,15 @@ PetscErrorCode AdviseRests(const Model *model, Diag *diag);
 /* Collective. of (n_nodes, 0 on entry): of the bodies that share nodes, directly or through others, the first one's
  * number from 1 on, where they touch the node. */
 PetscErrorCode JoinedBodies(const Model *model, PetscReal *of);
-/* Loads out of balance, of the forces that there are: more than Newton's method leaves; of pressures on a surface whose
- * parts go with points, and come to overlap and gape by that. */
+/* Loads out of balance, of the forces that there are: more than Newton's method leaves. */
 #define UNHELD_BALANCE 1e-6
-#define UNHELD_OPEN_SURFACE 1e-4
+/* Likewise, of pressures on a surface whose parts go with points, and come to overlap and gape by that. */
+PetscReal unheld_open_surface(const Model *model);
 /* start/unheld.c. Collective. analysis.unheld: hold: what nothing holds is told, and a mistake where the loads of the
  * first step push it. */
 PetscErrorCode UnheldCheck(Model *model, Diag *diag);
-/* Collective. Otherwise: a mistake where nothing keeps a body from turning in walls that are smooth and round, and loads
- * leave it as it lies. What they do not hold of directions is for CheckHeld. */
+/* Collective. Otherwise: a mistake where nothing keeps a body from turning in walls that are smooth and round, and
+ * loads leave it as it lies. */
 PetscErrorCode UnheldTurning(Model *model, Diag *diag);
 /* Collective. After mark_fixed, in each step: as few directions of nodes as hold it. */
 PetscErrorCode UnheldHold(Model *model);

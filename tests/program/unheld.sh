@@ -94,4 +94,24 @@ expect "a block in a trough" 0 on_ranks $ranks "$talus" run disk.yaml --out o --
 weighs 1824.66
 expect "a floor below it" 1 "$talus" run disk.yaml --out o --force --set 'walls[1]={name: w, shape: {half-space: {point: [0, -0.7], normal: [0, 1]}}}'
 lacks err.txt "nothing holds"
+
+# Pressed all round, off the grid's lines: what parts of its surface leave of a sum that is zero is no push.
+cat >ball.yaml <<'EOF'
+kinematics: 3d
+method: mpm
+analysis: {type: static, steps: 2, unheld: hold}
+grid: {box: {min: [-0.75, -0.75, -0.75], max: [0.75, 0.75, 0.75]}, size: 0.125}
+bodies: [{name: b, shape: {sphere: {centre: [0.031, 0.017, 0.043], radius: 0.5}}, material: r}]
+materials: {r: {law: neo-hookean, density: 1000, young: 1e5, poisson: 0.3}}
+loads: {pressures: [{on: {body: b}, value: 2e4}]}
+measures: {p: {stress: xx}}
+output: {every: end}
+EOF
+expect "a ball under pressure" 0 on_ranks $ranks "$talus" run ball.yaml --out o --force
+awk -F, 'END { exit !(($3 / -2e4 - 1) ^ 2 < 1e-7) }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"
+flat="--set grid.size=[0.25,0.125,0.25] --set loads.pressures[0].value=1e3"
+expect "in flat cells" 0 "$talus" run ball.yaml --out o --force $flat
+awk -F, 'END { exit !(($3 / -1e3 - 1) ^ 2 < 1e-6) }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"
+expect "a pressure that varies may push" 2 "$talus" run ball.yaml --out o --force $flat --set 'loads.pressures[0].factor="1"'
+says err.txt "N are out of balance"
 finish

@@ -313,6 +313,24 @@ static void note_free(Model *m, const UnheldGroup *g)
   }
 }
 
+/* What may be missing of the balance of pressures: of those that press a body all round, alike everywhere, whose sum is
+ * zero whatever becomes of the body; of others, which may be a push. */
+#define CLOSED 1e-3
+#define OPEN 1e-4
+
+PetscReal unheld_open_surface(const Model *m)
+{
+  if (!case_load_follows(m->c) || m->contact) return OPEN;
+  for (PetscInt k = 0; k < m->c->n_loads; ++k) {
+    const LoadSpec *load = &m->c->loads[k];
+    const Selector *on = &load->on;
+    if (load->kind != LOAD_PRESSURE) continue;
+    if (!on->body || on->boundary || on->has_shape || on->has[0] || on->has[1] || on->has[2]) return OPEN;
+    if (load->factor || m->loads->asked[k].ask) return OPEN;
+  }
+  return CLOSED;
+}
+
 /* Work of the loads of the first step along its free motions. */
 static PetscErrorCode CheckGroup(Model *m, UnheldGroup *g, Diag *diag)
 {
@@ -334,7 +352,7 @@ static PetscErrorCode CheckGroup(Model *m, UnheldGroup *g, Diag *diag)
   snprintf(path, sizeof path, "bodies[%d]", (int)g->body);
   name_free(m, g, text);
   note_free(m, g);
-  if (most > (case_load_follows(m->c) ? UNHELD_OPEN_SURFACE : UNHELD_BALANCE) * sums[RIGID]) {
+  if (most > (case_load_follows(m->c) ? unheld_open_surface(m) : UNHELD_BALANCE) * sums[RIGID]) {
     diag_error(diag, path, "nothing holds '%s' %s, and loads push it that way: %.3g of %.3g N are out of balance",
                m->c->bodies[g->body].name, text, (double)most, (double)sums[RIGID]);
     diag_hint(diag, "analysis.unheld: hold is for loads in balance; fix a boundary, or analysis: {type: dynamic}");

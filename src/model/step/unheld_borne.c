@@ -44,7 +44,7 @@ static PetscErrorCode Borne(const Model *m, const StepProblem *p, PetscReal *bor
     if (m->unheld.dof[k] < owned && n->fixed[m->unheld.dof[k]]) sums[0] += PetscAbsReal(n->force[m->unheld.dof[k]]);
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, m->comm));
   *borne = sums[0];
-  *much = sums[0] > UNHELD_BALANCE * sums[1] + UNHELD_OPEN_SURFACE * sums[2] + p->round_off;
+  *much = sums[0] > UNHELD_BALANCE * sums[1] + unheld_open_surface(m) * sums[2] + p->round_off;
   PetscFunctionReturn(0);
 }
 
