@@ -73,6 +73,7 @@ typedef struct Case {
   PetscBool seeks;          /* does any stage seek a factor of safety or a limit load? */
   PetscBool staged;         /* has it stages, or is it one? */
   const char *transfer_why; /* words that go on behind a transfer that it did not name; else NULL */
+  PetscBool damps_clouds;   /* has it Bossak's alpha of clouds in which a law yields, without having named it? */
   PetscReal start;          /* when it began, s */
   PetscReal release;        /* s over which what is out of balance at the start fades; 0: at once */
 } Case;

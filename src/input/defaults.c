@@ -101,6 +101,7 @@ PetscErrorCode DefaultScheme(const YamlNode *given, Case *c)
 
   PetscFunctionBeginUser;
   if (rings_in_clouds(given, c)) {
+    c->damps_clouds = PETSC_TRUE;
     a->bossak = BOSSAK_OF_CLOUDS;
     a->beta = analysis_usual_beta(a);
     a->gamma = analysis_usual_gamma(a);

@@ -54,3 +54,5 @@ const char *method_basis(const Method *method, const Case *c);
 void method_tell_basis(const Method *method, const Case *c, size_t size, char *text);
 /* The same of the transfer, with the scheme that goes with it; no: nodes take no motion from points there. */
 PetscBool method_tell_transfer(const Method *method, const Case *c, size_t size, char *text);
+/* The same of a scheme that the method chose; no: it is the one that the case names, or that of all methods. */
+PetscBool method_tell_scheme(const Method *method, const Case *c, size_t size, char *text);

@@ -82,3 +82,11 @@ PetscBool method_tell_transfer(const Method *method, const Case *c, size_t size,
   snprintf(text, size, "%s%s; scheme %s", a->transfer, c->transfer_why ? c->transfer_why : "", time_scheme_of(a)->name);
   return PETSC_TRUE;
 }
+
+PetscBool method_tell_scheme(const Method *method, const Case *c, size_t size, char *text)
+{
+  if (!c->damps_clouds) return PETSC_FALSE;
+  snprintf(text, size, "%s, alpha %g, the default of %s where a law yields; analysis: {scheme: newmark} damps nothing",
+           time_scheme_of(&c->analysis)->name, (double)c->analysis.bossak, method->name);
+  return PETSC_TRUE;
+}

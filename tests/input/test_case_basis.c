@@ -127,6 +127,29 @@ static void Transferred(void **state)
   }
 }
 
+/* A scheme that damps where nobody asked for it is told. */
+static void SchemeTold(void **state)
+{
+  static const struct {
+    const char *text, *told;
+  } damped[] = {
+    {MOVING("gmm", "") YIELDS, "bossak, alpha -0.1, the default of gmm where a law yields"},
+    {MOVING("gmm", ""), NULL},
+    {MOVING("gmm", ", bossak: -0.1") YIELDS, NULL},
+    {MOVING("gmm", ", scheme: newmark") YIELDS, NULL},
+    {MOVING("fem", "") YIELDS, NULL},
+  };
+  char told[256];
+  (void)state;
+  for (size_t i = 0; i < sizeof damped / sizeof damped[0]; ++i) {
+    Case *c = read_good(damped[i].text);
+    const PetscBool tells = method_tell_scheme(method_find(c->method), c, sizeof told, told);
+    if (tells != (damped[i].told != NULL) || (tells && strncmp(told, damped[i].told, strlen(damped[i].told))))
+      fail_msg("%s\ntells %s", damped[i].text, tells ? told : "nothing");
+    assert_int_equal(CaseDestroy(&c), 0);
+  }
+}
+
 /* The resolved case names what was chosen: it reads back to the same, and nothing is left to choose. */
 static void Written(void **state)
 {
@@ -348,8 +371,9 @@ static void Resolved(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(Chosen),    cmocka_unit_test(Written), cmocka_unit_test(Midpoint), cmocka_unit_test(Damped),
-    cmocka_unit_test(Followers), cmocka_unit_test(Idle),    cmocka_unit_test(Resolved), cmocka_unit_test(Transferred)};
+    cmocka_unit_test(Chosen),   cmocka_unit_test(Written),     cmocka_unit_test(Midpoint),
+    cmocka_unit_test(Damped),   cmocka_unit_test(Followers),   cmocka_unit_test(Idle),
+    cmocka_unit_test(Resolved), cmocka_unit_test(Transferred), cmocka_unit_test(SchemeTold)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

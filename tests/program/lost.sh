@@ -104,6 +104,22 @@ block >fall.yaml
 expect "a fall" 0 "$talus" run fall.yaml --out fall --quiet --set grid.size=0.25
 says err.txt "warning: the transfer between points and grid took " " % of the energy that came in (" "an energy balance near 0 does not show it" \
   'hint: elastic bodies keep it with `analysis: {transfer: consistent, scheme: midpoint}`'
+# So is what the damping of a scheme takes, and which one gmm chose by itself: a beam of j2 that swings and never yields
+cat >swing.yaml <<'END'
+kinematics: plane-strain
+method: gmm
+analysis: {type: dynamic, end: 4, step: 0.03}
+grid: {box: {min: [0, 0], max: [2, 0.5]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [2, 0.5]}}, material: m, velocity: [0, 0.5]}]
+materials: {m: {law: j2, density: 1000, young: 1e6, poisson: 0.3, yield_stress: 1e8}}
+boundary: [{name: w, on: {x: 0}, fix: [x, y]}]
+measures: {n: {energy: numerical}}
+output: {every: end}
+END
+expect "a swing" 0 "$talus" run swing.yaml --out swing --quiet
+says swing/log.txt "scheme = bossak, alpha -0.1, the default of gmm where a law yields" "J taken by the damping of the time scheme, "
+expect "undamped" 0 "$talus" run swing.yaml --out undamped --quiet --set analysis.scheme=newmark
+lacks undamped/log.txt "alpha -0.1" "taken by the damping of the time scheme"
 expect "list measures" 0 "$talus" list measures
 says out.txt "outside " "outside_momentum "
 expect "of a body" 2 "$talus" check fly.yaml --set 'measures.mass.of={body: gone}'

@@ -316,6 +316,7 @@ static PetscErrorCode ReportSizes(Model *m, Diag *diag, FILE *out)
   method_tell_basis(m->method, m->c, sizeof told, told);
   say(m, out, "#   basis: %s\n", told);
   if (method_tell_transfer(m->method, m->c, sizeof told, told)) say(m, out, "#   transfer: %s\n", told);
+  if (method_tell_scheme(m->method, m->c, sizeof told, told)) say(m, out, "#   scheme: %s\n", told);
   report_followers(m, out);
   say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
   PetscCall(EstimateMemory(m, points, unknowns, all_pairs, &needed));

@@ -116,6 +116,10 @@ PetscErrorCode LossesLogEnd(const Model *m, RunDir *dir)
       "transfer = %.6g J between points and grid, %.2g %% of the %.6g J that came in (start, loads, gravity, "
       "prescribed motion)",
       (double)m->transfer_energy, (double)(100 * share_of_input(m, m->transfer_energy)), (double)m->most_energy));
+  const PetscReal numerical = share_of_input(m, m->numerical_energy);
+  if (PetscAbsReal(numerical) > TRANSFER_ALLOWED)
+    PetscCall(RunDirLog(dir, "numerical = %.6g J taken by the damping of the time scheme, %.2g %% of what came in",
+                        (double)m->numerical_energy, (double)(100 * numerical)));
   PetscFunctionReturn(0);
 }
 

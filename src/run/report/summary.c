@@ -40,6 +40,7 @@ PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
   method_tell_basis(m->method, m->c, sizeof told, told);
   PetscCall(RunDirLog(dir, "basis = %s", told));
   if (method_tell_transfer(m->method, m->c, sizeof told, told)) PetscCall(RunDirLog(dir, "transfer = %s", told));
+  if (method_tell_scheme(m->method, m->c, sizeof told, told)) PetscCall(RunDirLog(dir, "scheme = %s", told));
   if (case_seeks(&m->c->analysis)) PetscCall(RunDirLog(dir, "formulation = %s", m->formulation->name));
   for (const char *const *law = plugin_words(); *law; ++law) PetscCall(RunDirLog(dir, "law = %s", *law));
   PetscCall(RunDirLog(dir, "cells = %d nodes = %d points = %d ranks = %d", (int)m->grid->n_cells_global,

@@ -130,6 +130,7 @@ PetscErrorCode RunNextStage(Run *r, Diag *diag)
   PetscCall(Attend(r));
   PetscCall(RunDirLog(r->dir, "stage = %d of %d (%s) from t = %.9g s", (int)k + 1, (int)r->whole->n_stages, stage->name,
                       (double)r->starts[k]));
+  if (method_tell_scheme(r->model->method, r->c, sizeof text, text)) PetscCall(RunDirLog(r->dir, "scheme = %s", text));
   PetscCall(RunTellImbalance(r, &imbalance));
   PetscCall(RunWriteStages(r));
   PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_TRUE, r->events)));
