@@ -18,6 +18,13 @@ PetscReal amplitude_value(const Amplitude *a, PetscReal t, PetscReal fallback)
   return (1 - s) * a->value[low] + s * a->value[high];
 }
 
+PetscReal amplitude_size(const Amplitude *a)
+{
+  PetscReal largest = 0;
+  for (PetscInt i = 0; i < a->n; ++i) largest = PetscMax(largest, PetscAbsReal(a->value[i]));
+  return largest;
+}
+
 PetscBool case_raises(const Case *c, const Amplitude *amplitude)
 {
   const LimitSpec *limit = &c->analysis.limit;

@@ -161,5 +161,10 @@ typedef void (*TableVisit)(void *context, const Amplitude *table, TableUse use, 
 void case_visit_tables(const Case *c, TableVisit visit, void *context);
 /* The first time after t at which one of these tables turns, s; PETSC_MAX_REAL if none does. */
 PetscReal case_corner_after(const Case *c, PetscReal t);
+/* Of a table of that use, do its values at the ends of steps count, and no others? */
+PetscBool case_counts_at_ends(const AnalysisSpec *a, TableUse use);
+/* A step from t to `until`, or its part up to the peak of such a table that it would pass by, by a twentieth of the
+ * table's largest size: its end, s. */
+PetscReal case_peak_within(const Case *c, PetscReal t, PetscReal until);
 /* Does any of them begin to change between t and `until`, both counted, having stood still before? */
 PetscBool case_begins_within(const Case *c, PetscReal t, PetscReal until);

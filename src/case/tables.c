@@ -3,6 +3,7 @@
 #include "case/case.h"
 
 #define ROUNDING 1e-9 /* of a time: times are sums */
+#define PASSED 0.05   /* of the largest value: by so much a table goes beyond what it is at both ends of a step */
 
 static void visit_motion(const Case *c, const MotionSpec *m, const char *path, TableVisit visit, void *context)
 {
@@ -88,6 +89,7 @@ static PetscBool is_corner(const Amplitude *a, PetscInt i)
 typedef struct {
   PetscReal t, until, corner;
   PetscBool begins;
+  const AnalysisSpec *analysis;
 } Sought;
 
 static void seek_corner(void *context, const Amplitude *a, TableUse use, const char *path)
@@ -104,6 +106,33 @@ PetscReal case_corner_after(const Case *c, PetscReal t)
   Sought s = {.t = t, .corner = PETSC_MAX_REAL};
   case_visit_tables(c, seek_corner, &s);
   return s.corner;
+}
+
+PetscBool case_counts_at_ends(const AnalysisSpec *a, TableUse use)
+{
+  return (PetscBool)(use == TABLE_PLACE || use == TABLE_PARAMETER || (use == TABLE_FORCE && case_is_static(a)));
+}
+
+static void seek_peak(void *context, const Amplitude *a, TableUse use, const char *path)
+{
+  Sought *s = context;
+  const PetscReal allowed = PASSED * amplitude_size(a), first = amplitude_value(a, s->t, 1);
+  (void)path;
+  if (!case_counts_at_ends(s->analysis, use)) return;
+  for (PetscInt i = first_behind(a, s->t); i < a->n && a->origin + a->time[i] < s->until; ++i) {
+    const PetscReal last = amplitude_value(a, s->until, 1), v = a->value[i];
+    if (v > PetscMax(first, last) + allowed || v < PetscMin(first, last) - allowed) s->until = a->origin + a->time[i];
+  }
+}
+
+PetscReal case_peak_within(const Case *c, PetscReal t, PetscReal until)
+{
+  Sought s = {.t = t, .until = until, .analysis = &c->analysis};
+  do { /* what ends at one peak may go over another, which lay within the ends before */
+    until = s.until;
+    case_visit_tables(c, seek_peak, &s);
+  } while (s.until < until);
+  return s.until;
 }
 
 /* It stood still up to a point that is not before t, and changes from there on. */

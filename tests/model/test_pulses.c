@@ -15,9 +15,11 @@ static const Kind kinds[] = {
   {5, {0, 0.0993, 0.0996, 0.0999, 1}, {0, 0, 1, 0, 0}, "its integral is 0.0003 s, and steps take 0 s for it", PEAK},
   {5, {0, 0.0997, 0.1, 0.1003, 1}, {0, 0, 1, 0, 0}, "its integral is 0.0003 s, and steps take 0.002 s for it", NULL},
   {6, {0, 0.0981, 0.0982, 0.0991, 0.0992, 1}, {0, 0, 1, 1, 0, 0}, "steps take 0 s for it", PEAK},
-  {5, {0, 0.097, 0.099, 0.101, 1}, {0, 0, 1, 0, 0}, NULL, PEAK},             /* sides as long as a step */
-  {4, {0, 0.0993, 0.0994, 1}, {0, 0, 1, 1}, NULL, NULL},                     /* a jump */
-  {5, {0, 0.05, 0.0503, 0.0506, 0.1}, {0, 0.5, 0.503, 0.506, 1}, NULL, NULL} /* on a line */
+  {5, {0, 0.097, 0.099, 0.101, 1}, {0, 0, 1, 0, 0}, NULL, PEAK},          /* sides as long as a step */
+  {3, {0, 0.007, 0.02}, {0, 1, 0}, NULL, PEAK "0.007 s and back within"}, /* sides of many steps */
+  {6, {0.001, 0.003, 0.005, 0.007, 0.009, 0.011}, {0.588, 0.809, 0.951, 1, 0.951, 0.809}, NULL, NULL}, /* a sine */
+  {4, {0, 0.0993, 0.0994, 1}, {0, 0, 1, 1}, NULL, NULL},                                               /* a jump */
+  {5, {0, 0.05, 0.0503, 0.0506, 0.1}, {0, 0.5, 0.503, 0.506, 1}, NULL, NULL}                           /* on a line */
 };
 
 /* A block with a traction of that amplitude. */
@@ -42,8 +44,8 @@ static void test_loads(void **state)
   }
 }
 
-/* What steps make of all of it: sides shorter than a step, a step apart and more. In steps that may grow its corners are
- * ends of steps, but for those that lie closer together than `step`. */
+/* What steps make of all of it: sides shorter than a step, a step apart and more. In steps that may grow its corners
+ * are ends of steps, but for those that lie closer together than `step`. */
 static void test_sums(void **state)
 {
   static const struct {
@@ -58,7 +60,8 @@ static void test_sums(void **state)
      STEP},
     {{5, {0, 0.021, 0.0230, 0.031, 0.033}, {0, 0, 1, 1, 0}, NULL, NULL}, STEP},
     {{5, {0, 0.021, 0.0232, 0.031, 0.0333}, {0, 0, 1, 1, 0}, NULL, NULL}, 50 * STEP},
-    {{5, {0, 0.021, 0.0212, 0.0233, 0.0235}, {0, 0, 1, 1, 0}, "its integral over the run", NULL}, 50 * STEP},
+    {{5, {0, 0.021, 0.0212, 0.0233, 0.0235}, {0, 0, 1, 1, 0}, "its integral", NULL}, 50 * STEP},
+    {{5, {0, 0.0503, 0.0507, 0.0511, 0.2}, {0, 0, 1, 0, 0}, "is 0.0004 s, and steps take 0 s", NULL}, 50 * STEP},
   };
   (void)state;
   EACH_OF (k, sums) {
@@ -66,6 +69,26 @@ static void test_sums(void **state)
     block(&b, "fem", &sums[k].kind);
     b.c.analysis.largest = sums[k].largest;
     bench_warned(&b, PETSC_COMM_WORLD, "loads.tractions[0].amplitude", sums[k].kind.words);
+  }
+}
+
+/* A record twice as close as steps: what swings to both sides makes up for itself within three steps, to 4 %, and is
+ * not told; what swings to one side is, over the whole run. */
+static void test_records(void **state)
+{
+  PetscReal time[201], value[201];
+  const Kind none = {.n = 0};
+  (void)state;
+  for (int one = 0; one < 2; ++one) {
+    Bench b;
+    block(&b, "fem", &none);
+    for (int i = 0; i < 201; ++i) {
+      time[i] = i * STEP / 2;
+      value[i] = 0.5 + (i % 2 == 0 ? 0 : one || i % 4 == 1 ? 0.12 : -0.12);
+    }
+    b.load[0].amplitude = (Amplitude){.n = 201, .time = time, .value = value};
+    bench_warned(&b, PETSC_COMM_WORLD, "loads.tractions[0].amplitude",
+                 one ? "its integral over the run is 0.112 s, and steps of 0.002 s take 0.1 s" : NULL);
   }
 }
 
@@ -143,8 +166,8 @@ static void test_jumps(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_loads), cmocka_unit_test(test_sums),
-                                     cmocka_unit_test(test_parameters), cmocka_unit_test(test_motions),
-                                     cmocka_unit_test(test_jumps)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_loads),   cmocka_unit_test(test_sums),
+                                     cmocka_unit_test(test_records), cmocka_unit_test(test_parameters),
+                                     cmocka_unit_test(test_motions), cmocka_unit_test(test_jumps)};
   return run_model_tests(argc, argv, tests);
 }

@@ -134,6 +134,13 @@ awk -F, 'NR > 2 && $1 - t < 0.00999 { exit 1 } { t = $1 }' soft/history.csv || f
 expect "a peak in long steps" 0 "$talus" run peak.yaml --out long --quiet --set materials.m.cohesion=1e9 --set analysis.largest=2
 awk -F, '{ n += ($1 - 1) ^ 2 < 1e-16; m += ($1 - 2) ^ 2 < 1e-16 } END { exit n != 1 || m != 1 || NR > 12 }' long/history.csv ||
   fail "$name: $(cut -d, -f1 long/history.csv | tr '\n' ' ')"
+# Where steps may grow those of `step` end at peaks of places, too: there lay two within one, of which the first was within its ends
+turn
+expect "two peaks on $ranks" 0 on_ranks $ranks "$talus" run peak.yaml --out met --quiet --set materials.m.cohesion=1e9 --set analysis.largest=0.2 \
+  --set 'boundary[2].amplitude=[[0, 0], [1, 0], [1.01, 0.5], [1.02, -0.5], [1.05, 1], [3, 1]]'
+lacks err.txt "and back within"
+awk -F, '{ n += ($1 - 1.01) ^ 2 < 1e-16; m += ($1 - 1.02) ^ 2 < 1e-16 } END { exit n != 1 || m != 1 || NR > 40 }' met/history.csv ||
+  fail "$name: $(cut -d, -f1 met/history.csv | tr '\n' ' ')"
 
 # The last of so many equal steps ends at the end: ten tenths sum up to 0.9999999999999999
 for steps in 3 10 49; do

@@ -15,3 +15,5 @@ typedef struct {
 PetscReal amplitude_value(const Amplitude *amplitude, PetscReal t, PetscReal fallback);
 /* Integral over [0, t], for prescribed velocities. */
 PetscReal amplitude_integral(const Amplitude *amplitude, PetscReal t, PetscReal fallback);
+/* The largest size of its values. */
+PetscReal amplitude_size(const Amplitude *amplitude);

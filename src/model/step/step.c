@@ -28,6 +28,16 @@ static PetscReal until_corner(const Model *m, PetscReal dt)
   return PetscMax(way, step);
 }
 
+/* How long a step of dt may be at most: where it may grow, also one of `step` or less ends at a peak of what is asked
+ * for at the ends of steps. */
+static PetscReal until_peak(const Model *m, PetscReal dt)
+{
+  const AnalysisSpec *a = &m->c->analysis;
+  if (seeks(m) || a->largest <= (1 + ROUNDING) * a->step || a->type == ANALYSIS_EXPLICIT) return PETSC_MAX_REAL;
+  const PetscReal end = m->time + dt, peak = case_peak_within(m->c, m->time, end);
+  return peak < end ? peak - m->time : PETSC_MAX_REAL;
+}
+
 /* In statics steps that were halved lead back to the times that were asked for: what changes with them has its corners
  * there. */
 static PetscReal until_return(const Model *m)
@@ -43,8 +53,9 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
   begin_anew(m);
   limit = PetscMin(limit, until_corner(m, PetscMin(limit, m->control.next)));
   const PetscReal back = until_return(m);
-  const PetscBool returning = (PetscBool)(back < PetscMin(limit, m->control.next));
-  limit = PetscMin(limit, back);
+  const PetscReal peak = until_peak(m, PetscMin(back, PetscMin(limit, m->control.next)));
+  const PetscBool returning = (PetscBool)(back < PetscMin(PetscMin(limit, peak), m->control.next));
+  limit = PetscMin(PetscMin(limit, back), peak);
   const PetscBool shortened = limit < m->control.next;
   PetscReal dt = PetscMin(limit, m->control.next);
   StepStart start;
