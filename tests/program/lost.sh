@@ -120,6 +120,14 @@ expect "a swing" 0 "$talus" run swing.yaml --out swing --quiet
 says swing/log.txt "scheme = bossak, alpha -0.1, the default of gmm where a law yields" "J taken by the damping of the time scheme, "
 expect "undamped" 0 "$talus" run swing.yaml --out undamped --quiet --set analysis.scheme=newmark
 lacks undamped/log.txt "alpha -0.1" "taken by the damping of the time scheme"
+# Each stage chooses, and tells
+sed 's/^analysis:.*/analysis: {type: static, steps: 1}/; s/, velocity: \[0, 0.5\]//' swing.yaml >rest.yaml
+cat >>rest.yaml <<'END'
+loads: {gravity: [0, -0.1]}
+stages: [{name: rest}, {name: swing, analysis: {type: dynamic, end: 0.06, step: 0.03}}]
+END
+expect "a stage that swings" 0 "$talus" run rest.yaml --out rest --quiet
+[ "$(grep -c "^scheme = bossak, alpha -0.1" rest/log.txt)" = 1 ] || fail "$name: $(grep scheme rest/log.txt)"
 expect "list measures" 0 "$talus" list measures
 says out.txt "outside " "outside_momentum "
 expect "of a body" 2 "$talus" check fly.yaml --set 'measures.mass.of={body: gone}'
