@@ -288,7 +288,7 @@ PetscErrorCode MovingHeight(const Model *model, PetscReal *height);
 /* Collective. Value of one measure of the case now. */
 PetscErrorCode ModelMeasure(Model *model, const MeasureSpec *measure, PetscInt index, PetscReal *value);
 /* Collective. The same for a row of the history (measure/rows.c): of what is a mean over a step that since the last
- * row. Whoever has written one says so. */
+ * row, and formulas of these. Whoever has written one says so. */
 PetscErrorCode ModelMeasureRow(Model *model, const MeasureSpec *measure, PetscInt index, PetscReal *value);
 void model_row_given(Model *model);
 /* Numbers behind the list that a measure keeps. */

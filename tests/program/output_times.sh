@@ -165,6 +165,7 @@ measures:
   both: {formula: 2 * f - side}
   low: {extent: {min: y}}
   mean: {formula: 2 * f - side, mean: {window: [0, 0.11]}}
+  ratio: {formula: f / side}
 END
 }
 impulse() { awk -F, -v k="$2" 'NR > 2 {sum += ($1 - t) * $k} {t = $1} END {printf "%.9g\n", sum}' "$1/history.csv"; }
@@ -174,6 +175,8 @@ few_rows() {
     awk -v a="$(impulse all $column)" -v b="$(impulse few $column)" 'BEGIN {d = a - b; exit !(a * a > 1 && d * d < 1e-14 * a * a)}' ||
       fail "$name: column $column has $(impulse few $column), every step $(impulse all $column)"
   done
+  awk -F, 'NR > 2 && $4 != 0 {++n; d = $8 * $4 - $3; if (!(d * d <= 1e-20 * $3 * $3)) bad = 1} END {exit bad || !n}' few/history.csv ||
+    fail "$name: a formula is not that of its row"
   [ "$(tail -n 1 few/history.csv | cut -d, -f6)" = "$(tail -n 1 all/history.csv | cut -d, -f6)" ] || fail "$name: what is no mean"
   rm -rf cut && cp -r few cut
   ls cut/checkpoint_*.h5 | sed -n '6,$p' | xargs rm

@@ -6,6 +6,7 @@
 typedef struct {
   Model *m;
   PetscInt before; /* those before it count: none can need itself */
+  PetscErrorCode (*measure)(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value);
 } Lookup;
 
 static PetscErrorCode Other(void *context, const char *name, PetscBool *known, PetscReal *value)
@@ -18,7 +19,7 @@ static PetscErrorCode Other(void *context, const char *name, PetscBool *known, P
     const MeasureSpec *s = &l->m->c->measures[k];
     if (strcmp(s->name, name) != 0) continue;
     *known = PETSC_TRUE;
-    PetscCall(ModelMeasure(l->m, s, k, value));
+    PetscCall(l->measure(l->m, s, k, value));
   }
   PetscFunctionReturn(0);
 }
@@ -63,7 +64,17 @@ PetscErrorCode MeasureOverStep(const Case *c, PetscInt k, PetscBool *is)
 
 static PetscErrorCode Value(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
 {
-  Lookup lookup = {.m = m, .before = index};
+  Lookup lookup = {.m = m, .before = index, .measure = ModelMeasure};
+  Formula formula = {.value = Other, .context = &lookup, .at = s->word};
+
+  PetscFunctionBeginUser;
+  PetscCall(FormulaValue(&formula, value));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FormulaOfRow(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value)
+{
+  Lookup lookup = {.m = m, .before = index, .measure = ModelMeasureRow};
   Formula formula = {.value = Other, .context = &lookup, .at = s->word};
 
   PetscFunctionBeginUser;

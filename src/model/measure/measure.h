@@ -130,6 +130,8 @@ PetscBool window_list_fits(PetscInt64 length);
 PetscErrorCode MeasureOverStep(const Case *c, PetscInt k, PetscBool *is);
 /* Collective. After a step of dt: what the next row of the history is to have of measure k (rows.c). */
 PetscErrorCode RowRemember(Model *m, PetscInt k, PetscReal dt);
+/* Collective. A formula of what a row of the history has of its measures (formula.c). */
+PetscErrorCode FormulaOfRow(Model *m, const MeasureSpec *s, PetscInt index, PetscReal *value);
 /* "kg/s" of "kg". */
 const char *rate_unit(const char *unit);
 

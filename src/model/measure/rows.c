@@ -1,15 +1,22 @@
 /* What rows of the history hold of means over a step: where not every step has a row, the mean since the last one, so
- * that a row times the time since then is the impulse, however few rows there are. */
+ * that a row times the time since then is the impulse, however few rows there are. A formula is that of the row:
+ * friction over a row is the ratio of impulses, which the mean of ratios is not. */
 #include "model/measure/measure.h"
+#include <string.h>
 
 /* With a row for each step it is that of the step. */
 static PetscBool skips_steps(const Case *c) { return c->output.history != -1; }
 
-/* One step alone leaves its value to the last digit. */
+static PetscBool is_formula(const MeasureSpec *s)
+{
+  return (PetscBool)(!strcmp(s->kind, "formula") && !measure_has_window(s));
+}
+
+/* One step alone leaves its value to the last digit. A step without a value (nan) leaves none to the row: a mean of the
+ * others would not be that since the row before. */
 static void add_step(RowMean *row, PetscReal dt, PetscReal value)
 {
   if (row->given) *row = (RowMean){0};
-  if (PetscIsNanReal(value)) return;
   const PetscReal before = row->time;
   row->time += dt;
   row->mean = before > 0 ? row->mean + dt / row->time * (value - row->mean) : value;
@@ -22,7 +29,7 @@ PetscErrorCode RowRemember(Model *m, PetscInt k, PetscReal dt)
   PetscReal value;
 
   PetscFunctionBeginUser;
-  if (!dt || !skips_steps(m->c) || measure_has_window(s)) PetscFunctionReturn(0);
+  if (!dt || !skips_steps(m->c) || measure_has_window(s) || is_formula(s)) PetscFunctionReturn(0);
   PetscCall(MeasureOverStep(m->c, k, &over_step));
   if (!over_step) PetscFunctionReturn(0);
   PetscCall(ModelMeasure(m, s, k, &value));
@@ -35,7 +42,8 @@ PetscErrorCode ModelMeasureRow(Model *m, const MeasureSpec *s, PetscInt index, P
   const RowMean *row = &m->memory[index].row;
 
   PetscFunctionBeginUser;
-  if (row->time > 0) *value = row->mean;
+  if (is_formula(s)) PetscCall(FormulaOfRow(m, s, index, value));
+  else if (row->time > 0) *value = row->mean;
   else PetscCall(ModelMeasure(m, s, index, value));
   PetscFunctionReturn(0);
 }
