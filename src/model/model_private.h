@@ -338,6 +338,8 @@ void advise_jumps(const Model *model, Diag *diag);
 void advise_down(const Model *model, Diag *diag);
 /* The same of prescribed nodes that stay while what they move passes them: passing.c. */
 PetscErrorCode AdvisePassing(const Model *model, Diag *diag);
+/* The same of a history of one row that holds means over the whole run: rows.c. */
+PetscErrorCode AdviseRows(const Model *model, Diag *diag);
 /* The same of what would begin after the end: late.c. */
 void advise_late(const Model *model, Diag *diag);
 /* cells.c. Collective. The same of cells whose points do not hold a uniform stress. */

@@ -35,7 +35,7 @@ PetscErrorCode RunWritten(Run *r, PetscErrorCode code)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Measure(Run *r)
+static PetscErrorCode MeasureRow(Run *r)
 {
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < r->c->n_measures; ++k)
@@ -43,11 +43,20 @@ static PetscErrorCode Measure(Run *r)
   PetscFunctionReturn(0);
 }
 
+/* What the run ends with is of its last step, whatever its last row is a mean of. */
+static PetscErrorCode MeasureEnd(Run *r)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < r->c->n_measures; ++k)
+    PetscCall(ModelMeasure(r->model, &r->c->measures[k], k, &r->values[k]));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode RunWriteRow(Run *r)
 {
   PetscFunctionBeginUser;
   if (r->row_step == r->model->step) PetscFunctionReturn(0);
-  PetscCall(Measure(r));
+  PetscCall(MeasureRow(r));
   model_row_given(r->model);
   r->row_step = r->model->step;
   run_fill_row(r);
@@ -289,10 +298,9 @@ static PetscErrorCode Close(Run *r, PetscReal *measures)
 
   PetscFunctionBeginUser;
   if (!r->failed && (r->n_written || may_go_on(r))) PetscCall(CheckpointSave(r));
-  /* a resumed run may have nothing left to do */
-  if (r->row_step == r->model->step) PetscCall(Measure(r));
   PetscCall(RunWriteLastRow(r));
   PetscCall(RunWriteState(r));
+  PetscCall(MeasureEnd(r));
   seconds = r->before + (MPI_Wtime() - r->start);
   if (measures) run_give_columns(r, measures);
   r->summary.steps = r->model->step;

@@ -70,6 +70,7 @@ static PetscErrorCode ReadResults(Verification *v, PetscReal end, Diag *diag)
     const PetscInt column = history_column(&history, r->study->measure);
     r->summary = summary;
     r->measures[r->measure] = column < 0 ? NAN : last[column];
+    found_last_step(v->options->run, r->study->measure, &r->measures[r->measure]);
   }
   PetscCall(HistoryFree(&history));
   PetscFunctionReturn(0);

@@ -168,6 +168,7 @@ measures:
   ratio: {formula: f / side}
 END
 }
+measured() { grep -E '^(f|side|both|ratio) = ' "$1/log.txt"; }
 impulse() { awk -F, -v k="$2" 'NR > 2 {sum += ($1 - t) * $k} {t = $1} END {printf "%.9g\n", sum}' "$1/history.csv"; }
 few_rows() {
   expect "$1, rows $2, on $ranks" 0 on_ranks $ranks "$talus" run bounce.yaml --out few --force --quiet --set "output.history=$2" --set checkpoint.steps=5 --set checkpoint.keep=99
@@ -177,6 +178,7 @@ few_rows() {
   done
   awk -F, 'NR > 2 && $4 != 0 {++n; d = $8 * $4 - $3; if (!(d * d <= 1e-20 * $3 * $3)) bad = 1} END {exit bad || !n}' few/history.csv ||
     fail "$name: a formula is not that of its row"
+  [ "$(measured few)" = "$(measured all)" ] || fail "$name: it ends with $(measured few), every step with $(measured all)"
   [ "$(tail -n 1 few/history.csv | cut -d, -f6)" = "$(tail -n 1 all/history.csv | cut -d, -f6)" ] || fail "$name: what is no mean"
   rm -rf cut && cp -r few cut
   ls cut/checkpoint_*.h5 | sed -n '6,$p' | xargs rm
@@ -193,8 +195,32 @@ for type in dynamic explicit; do
   few_rows $type end
 done
 bounce dynamic >bounce.yaml
-expect "means of a sweep" 0 "$talus" sweep bounce.yaml --over 'output.history={steps: 1},{steps: 7},end' --measure both:mean --measure mean --out swept
-awk -F, 'NR > 1 {d = $2 - $3; if (!($2 * $2 > 1 && d * d < 1e-20 * $2 * $2)) bad = 1} END {exit bad || NR != 4}' swept/sweep.csv ||
-  fail "$name: $(cat swept/sweep.csv)"
+expect "means of a sweep" 0 "$talus" sweep bounce.yaml --over 'output.history={steps: 1},{steps: 7},end' --measure both:mean --measure mean --measure side --out swept
+awk -F, 'NR == 2 {end = $4} NR > 1 {d = $2 - $3; if (!($2 * $2 > 1 && d * d < 1e-20 * $2 * $2) || $4 != end) bad = 1}
+  END {exit bad || NR != 4}' swept/sweep.csv || fail "$name: $(cat swept/sweep.csv)"
+
+# What a run ends with is of its last step, whatever mean its last row has; so is what is judged of it.
+mkdir judged
+cp bounce.yaml judged/case.yaml
+cat >judged/reference.yaml <<END
+title: What is judged
+studies:
+  side:
+    title: The side
+    measure: side
+    sweep: {name: step, symbol: dt, unit: s, set: {analysis.step: \$dt}}
+    series: {mpm: {}}
+    tolerance: 1e-6
+    source: every step
+    confidence: verified
+    rows: [{at: 2e-3, reference: $(sed -n 's/^side = \([^ ]*\).*/\1/p' swept/*1*/log.txt | tail -n 1)}]
+END
+expect "one row" 0 "$talus" run bounce.yaml --out one_row --set output.history=end
+expect "one row judged" 0 "$talus" verify judged --run one_row
+turn
+expect "until a force" 0 on_ranks $ranks "$talus" run bounce.yaml --out until --set output.history=end --set 'analysis.until=[{measure: f, above: 15000}]'
+says err.txt "its row at the end has of 'f' the mean over all steps"
+says until/log.txt 'ended = f rose above 15000 N'
+awk '/^f = / {last = $3} END {exit !(last > 15000)}' until/log.txt || fail "$name: $(measured until)"
 
 finish

@@ -5,6 +5,7 @@
  * case. Keys that came later have their defaults in an older run; if that names no basis, it had that of
  * the cell. */
 #include "run/report/found.h"
+#include <stdlib.h>
 #include <string.h>
 #include "input/case_file.h"
 #include "output/directory/run_dir_files.h"
@@ -101,4 +102,12 @@ void found_word(const char *folder, const char *name, const char *key, char word
     PetscStrncpy(word, line + n + 3, 64);
   }
   if (in) fclose(in);
+}
+
+void found_last_step(const char *folder, const char *measure, PetscReal *value)
+{
+  char key[256], word[64];
+  PetscSNPrintf(key, sizeof key, "%s in the last step", measure);
+  found_word(folder, "timings.txt", key, word);
+  if (word[0]) *value = (PetscReal)strtod(word, NULL);
 }

@@ -12,3 +12,6 @@ PetscErrorCode FoundIsCase(const Case *c, const char *text, PetscBool *is);
 PetscErrorCode FoundChanged(MPI_Comm comm, const char *folder, PetscBool runs, char file[PETSC_MAX_PATH_LEN]);
 /* Of one process: the value of `key = value` in a file of the run; empty if there is none. */
 void found_word(const char *folder, const char *name, const char *key, char word[64]);
+/* Of one process: a measure in the last step of the run, where the last row of its history has another number of it, a
+ * mean over several steps; *value stays as it was elsewhere. */
+void found_last_step(const char *folder, const char *measure, PetscReal *value);

@@ -102,13 +102,53 @@ static PetscErrorCode AddTime(char *text, size_t size, const char *name, PetscRe
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode AddCounts(const Model *m, const RunSummary *summary, size_t size, char *text)
+{
+  const size_t end = strlen(text);
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscSNPrintf(text + end, size - end,
+                          "steps = %d\niterations = %d\nmost iterations in a step = %d\nhalvings = %d\n"
+                          "tries from another first guess = %d\niterations of tries that failed = %d\n"
+                          "patterns = %d\nrepartitions = %d\nlargest imbalance = %.3f\noutcome = %s\n%s%s%s",
+                          (int)summary->steps, (int)summary->iterations, (int)summary->iterations_per_step,
+                          (int)summary->halvings, (int)m->tries.again, (int)m->tries.lost, (int)m->system->builds,
+                          (int)m->balance.repartitions, (double)PetscMax(m->balance.largest, 1),
+                          summary->reason[0] ? "gave up" : "done", summary->ended[0] ? "ended = " : "", summary->ended,
+                          summary->ended[0] ? "\n" : ""));
+  PetscFunctionReturn(0);
+}
+
+/* "force in the last step = 10000", of what the last row of the history has a mean over several steps of, for those who
+ * read the end of a run. */
+static PetscErrorCode AddLastStep(Model *m, const PetscReal *values, size_t size, char *text)
+{
+  PetscReal row;
+  char number[32];
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; m->c->output.history != -1 && k < m->c->n_measures; ++k) {
+    PetscCall(ModelMeasureRow(m, m->c->measures + k, k, &row));
+    if (row == values[k] || (PetscIsNanReal(row) && PetscIsNanReal(values[k]))) continue;
+    file_format_real(values[k], number);
+    const size_t end = strlen(text);
+    PetscCall(PetscSNPrintf(text + end, size - end, "%s in the last step = %s\n", m->c->measures[k].name, number));
+  }
+  PetscFunctionReturn(0);
+}
+
+#define TIMINGS_TEXT 2560  /* bytes of timings.txt at most, */
+#define LAST_STEP_TEXT 192 /* and of each line of a measure */
+
 PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, const PetscReal *values)
 {
   const PetscReal seconds = summary->seconds;
   PetscReal phase[PHASE_N], rest = seconds;
-  char text[2560] = "";
+  const size_t size = TIMINGS_TEXT + LAST_STEP_TEXT * (size_t)m->c->n_measures;
+  char *text;
 
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(size, &text));
   model_times(m, phase);
   const char *linear = newton_linear_name(m->newton);
   if (linear[0]) /* a run that was whole when it was resumed has solved nothing */
@@ -126,24 +166,17 @@ PetscErrorCode SummaryEnd(Model *m, RunDir *dir, const RunSummary *summary, cons
   if (m->tries.again || m->cuts)
     PetscCall(RunDirLog(dir, "tried again = %d lost iterations = %d", (int)m->tries.again, (int)m->tries.lost));
   PetscCall(LogBalance(m, dir, phase[PHASE_REPARTITION]));
-  PetscCall(AddTime(text, sizeof text, "total", seconds, seconds, "of all sessions of the run"));
+  PetscCall(AddTime(text, size, "total", seconds, seconds, "of all sessions of the run"));
   for (int k = 0; k < PHASE_N; ++k) {
-    PetscCall(AddTime(text, sizeof text, phase_names[k], phase[k], seconds, phase_help[k]));
+    PetscCall(AddTime(text, size, phase_names[k], phase[k], seconds, phase_help[k]));
     rest -= phase[k];
   }
   PetscCall(LogShares(dir, seconds, phase, rest));
-  PetscCall(AddTime(text, sizeof text, "rest", rest, seconds, "files, measures, earlier sessions of a resumed run"));
-  const size_t end = strlen(text);
-  PetscCall(PetscSNPrintf(text + end, sizeof text - end,
-                          "steps = %d\niterations = %d\nmost iterations in a step = %d\nhalvings = %d\n"
-                          "tries from another first guess = %d\niterations of tries that failed = %d\n"
-                          "patterns = %d\nrepartitions = %d\nlargest imbalance = %.3f\noutcome = %s\n%s%s%s",
-                          (int)summary->steps, (int)summary->iterations, (int)summary->iterations_per_step,
-                          (int)summary->halvings, (int)m->tries.again, (int)m->tries.lost, (int)m->system->builds,
-                          (int)m->balance.repartitions, (double)PetscMax(m->balance.largest, 1),
-                          summary->reason[0] ? "gave up" : "done", summary->ended[0] ? "ended = " : "", summary->ended,
-                          summary->ended[0] ? "\n" : ""));
+  PetscCall(AddTime(text, size, "rest", rest, seconds, "files, measures, earlier sessions of a resumed run"));
+  PetscCall(AddCounts(m, summary, size, text));
+  PetscCall(AddLastStep(m, values, size, text));
   const PetscErrorCode status = RunDirWriteText(dir, "timings.txt", text);
+  PetscCall(PetscFree(text));
   PetscFunctionReturn(status);
 }
 

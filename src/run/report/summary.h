@@ -9,7 +9,7 @@
 PetscErrorCode SummaryVersion(MPI_Comm comm, RunDir *dir);
 /* Sizes of the model, logged. Collective. */
 PetscErrorCode SummaryBegin(Model *model, RunDir *dir);
-/* Measures and timings, logged and in timings.txt. Collective. */
+/* Measures, of which `values` are those of the last step, and timings, logged and in timings.txt. Collective. */
 PetscErrorCode SummaryEnd(Model *model, RunDir *dir, const RunSummary *summary, const PetscReal *values);
 /* The numbers of timings.txt again; what is not there is 0. */
 void summary_read(const char *folder, RunSummary *summary);

@@ -145,6 +145,15 @@ PetscErrorCode MemberPlan(const Members *members, Member *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+/* The end is the last step, where the last row is a mean over several. */
+static void take_last_step(Member *m, PetscInt k)
+{
+  PetscReal value = m->values[k] / m->taken[k].times;
+  const PetscReal row = value;
+  found_last_step(m->folder, m->taken[k].measure, &value);
+  if (value != row) m->values[k] = m->taken[k].times * value;
+}
+
 PetscErrorCode MemberRead(const Members *members, Member *m)
 {
   char path[PETSC_MAX_PATH_LEN], reason[256];
@@ -160,6 +169,7 @@ PetscErrorCode MemberRead(const Members *members, Member *m)
   for (PetscInt k = 0; k < m->n_taken; ++k) {
     const TakenMeans means = {m->n_stages, m->means + k * m->n_stages};
     m->values[k] = taken_value(&m->taken[k], &means, &history, m->lack[k]);
+    if (m->taken[k].take == TAKE_END && !m->taken[k].has_window) take_last_step(m, k);
   }
   PetscCall(HistoryFree(&history));
   m->state = MEMBER_DONE;

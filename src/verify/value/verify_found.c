@@ -30,6 +30,7 @@ static PetscErrorCode ReadFinished(const Verification *v, const char *folder, Ve
     const PetscInt column = history_column(&history, name);
     const PetscBool stays = case_measure_of(case_stage(c, case_stages(c) - 1), name) >= 0;
     r->measures[k] = column >= 0 && stays ? last[column] : history_last(&history, column);
+    found_last_step(folder, name, &r->measures[k]);
   }
   PetscCall(HistoryFree(&history));
   PetscFunctionReturn(0);

@@ -269,7 +269,9 @@ static const SchemaEntry output_entries[] = {
       AT(OutputSpec, every)),
   KEY("history", EVERY, NULL,
       "when rows of history.csv are written, as `every`; what is a mean over a step in dynamics (forces of walls, "
-      "interfaces and boundaries, tractions, formulas of them) is in a row the mean since the row before",
+      "interfaces and boundaries, tractions) is in a row the mean since the row before, with `end` over the whole run, "
+      "and a formula is that of the row's numbers; what a run ends with in the log, in `talus verify` and in sweeps is "
+      "of its last step",
       .fallback = "{steps: 1}", AT(OutputSpec, history)),
   KEY("grid", BOOLEAN, NULL, "write the fields of the grid too", .fallback = "true", AT(OutputSpec, grid)),
   KEY(
