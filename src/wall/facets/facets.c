@@ -3,8 +3,8 @@
 #include <math.h>
 
 /* The nearest position of a facet: in its face, or on corner 0 1 2 or on edge 3 + (0 1 2). It is known by the way from
- * there to x, a sum of differences: far from the origin (maps have 5e6 m) a place of its own would be rounded to 1e-9 m,
- * and each facet's gaps to another one. */
+ * there to x, a sum of differences: far from the origin (maps have 5e6 m) a place of its own would be rounded to
+ * 1e-9 m, and each facet's gaps to another one. */
 typedef struct {
   PetscReal square, way[3];
   PetscInt facet;
