@@ -87,7 +87,7 @@ static PetscInt64 fingerprint(const Case *c)
     describe(c, &c->analysis.until[k], sizeof text, text);
     snprintf(more, sizeof more, " %d %.17g %.17g", (int)k, (double)c->analysis.until[k].value,
              (double)c->analysis.until[k].after);
-    sum ^= (PetscInt64)hash_text(text) ^ ((PetscInt64)hash_text(more) << 1);
+    sum ^= (PetscInt64)(hash_text(text) ^ (hash_text(more) << 1));
   }
   return sum;
 }
