@@ -1,18 +1,27 @@
 #include <string.h>
 #include "case/case.h"
 
-PetscReal amplitude_value(const Amplitude *a, PetscReal t, PetscReal fallback)
+/* t in s since the table began. */
+static PetscInt point_behind(const Amplitude *a, PetscReal t)
 {
-  PetscInt low = 0, high = a->n - 1;
-  if (a->n == 0) return fallback;
-  t -= a->origin;
-  if (t <= a->time[low]) return a->value[low];
-  if (t >= a->time[high]) return a->value[high];
-  while (high - low > 1) {
+  PetscInt low = 0, high = a->n;
+  while (low < high) {
     const PetscInt middle = low + (high - low) / 2;
     if (t < a->time[middle]) high = middle;
-    else low = middle;
+    else low = middle + 1;
   }
+  return low;
+}
+
+PetscInt amplitude_behind(const Amplitude *a, PetscReal t) { return point_behind(a, t - a->origin); }
+
+PetscReal amplitude_value(const Amplitude *a, PetscReal t, PetscReal fallback)
+{
+  if (a->n == 0) return fallback;
+  t -= a->origin;
+  if (t <= a->time[0]) return a->value[0];
+  if (t >= a->time[a->n - 1]) return a->value[a->n - 1];
+  const PetscInt high = point_behind(a, t), low = high - 1;
   if (a->value[low] == a->value[high]) return a->value[low]; /* what rounding would not leave as it is */
   const PetscReal s = (t - a->time[low]) / (a->time[high] - a->time[low]);
   return (1 - s) * a->value[low] + s * a->value[high];

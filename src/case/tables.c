@@ -64,13 +64,7 @@ void case_visit_tables(const Case *c, TableVisit visit, void *context)
 /* The first point of the table later than t, but for rounding; a->n: there is none. */
 static PetscInt first_behind(const Amplitude *a, PetscReal t)
 {
-  PetscInt low = 0, high = a->n;
-  while (low < high) {
-    const PetscInt middle = low + (high - low) / 2;
-    if (a->origin + a->time[middle] > t + ROUNDING * PetscAbsReal(t)) high = middle;
-    else low = middle + 1;
-  }
-  return low;
+  return amplitude_behind(a, t + ROUNDING * PetscAbsReal(t));
 }
 
 /* Of the piece that ends at point i; before the first and behind the last nothing changes. */

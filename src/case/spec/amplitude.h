@@ -15,5 +15,7 @@ typedef struct {
 PetscReal amplitude_value(const Amplitude *amplitude, PetscReal t, PetscReal fallback);
 /* Integral over [0, t], for prescribed velocities. */
 PetscReal amplitude_integral(const Amplitude *amplitude, PetscReal t, PetscReal fallback);
+/* The first point later than t; its n: there is none. */
+PetscInt amplitude_behind(const Amplitude *amplitude, PetscReal t);
 /* The largest size of its values. */
 PetscReal amplitude_size(const Amplitude *amplitude);

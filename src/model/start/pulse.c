@@ -29,12 +29,7 @@ typedef struct {
 static Integral integral(const Amplitude *a, PetscReal from, PetscReal to)
 {
   Integral all = {0, 0};
-  PetscInt low = 0, high = a->n;
-  while (low < high) {
-    const PetscInt middle = low + (high - low) / 2;
-    if (a->origin + a->time[middle] > from) high = middle;
-    else low = middle + 1;
-  }
+  PetscInt low = amplitude_behind(a, from);
   for (PetscReal t = from, next; t < to; t = next, ++low) {
     next = low < a->n ? PetscMin(to, a->origin + a->time[low]) : to;
     const PetscReal f = amplitude_value(a, t, 1), g = amplitude_value(a, next, 1), h = next - t;
