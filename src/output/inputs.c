@@ -57,11 +57,15 @@ typedef struct {
   const CaseFile *file;
 } Listing;
 
+static void write_line(FILE *out, const char *key, const FileSeal *seal, const char *path)
+{
+  fprintf(out, "%s = %08llx %lld %s\n", key, (unsigned long long)seal->crc, (long long)seal->bytes, path);
+}
+
 static void list_file(FILE *out, const char *key, const char *path)
 {
   FileSeal seal;
-  if (strchr(path, '\n') || !seal_path(path, &seal)) return;
-  fprintf(out, "%s = %08llx %lld %s\n", key, (unsigned long long)seal.crc, (long long)seal.bytes, path);
+  if (!strchr(path, '\n') && seal_path(path, &seal)) write_line(out, key, &seal, path);
 }
 
 /* grid.mesh, part.geo = ... */
@@ -95,18 +99,24 @@ static PetscBool runs_law(const Case *whole, const char *law)
   return has;
 }
 
-static void list_inputs(FILE *out, const Case *whole)
+static PetscErrorCode ListInputs(FILE *out, RunDir *dir, const Case *whole)
 {
   char key[128];
+
+  PetscFunctionBeginUser;
+  (void)dir;
   for (PetscInt k = 0; k < whole->n_files; ++k) list_case_file(out, &whole->files[k]);
   for (PetscInt k = 0; k < PLUGIN_MOST; ++k) {
     if (!plugins[k].file[0] || !runs_law(whole, plugins[k].name)) continue;
     snprintf(key, sizeof key, LAW "%s", plugins[k].name);
     list_file(out, key, plugins[k].file);
   }
+  PetscFunctionReturn(0);
 }
 
-PetscErrorCode InputsWrite(MPI_Comm comm, RunDir *dir, const Case *whole)
+/* Of rank 0: what `list` writes becomes the file, unless it is nothing. */
+static PetscErrorCode Write(MPI_Comm comm, RunDir *dir, PetscErrorCode (*list)(FILE *, RunDir *, const Case *),
+                            const Case *whole)
 {
   TextStream stream;
   PetscMPIInt rank;
@@ -116,12 +126,38 @@ PetscErrorCode InputsWrite(MPI_Comm comm, RunDir *dir, const Case *whole)
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCall(TextOpen(&stream));
-  if (!rank) list_inputs(stream.out, whole);
+  if (!rank) PetscCall(list(stream.out, dir, whole));
   PetscCall(TextClose(&stream, &text));
   any = text[0] != '\0';
   PetscCallMPI(MPI_Bcast(&any, 1, MPI_INT, 0, comm));
   const PetscErrorCode code = any ? RunDirWriteText(dir, FILES, text) : 0;
   PetscCall(PetscFree(text));
+  PetscFunctionReturn(code);
+}
+
+PetscErrorCode InputsWrite(MPI_Comm comm, RunDir *dir, const Case *whole)
+{
+  PetscFunctionBeginUser;
+  const PetscErrorCode code = Write(comm, dir, ListInputs, whole);
+  PetscFunctionReturn(code);
+}
+
+static PetscErrorCode ListMoved(FILE *out, RunDir *dir, const Case *whole)
+{
+  Inputs inputs;
+
+  PetscFunctionBeginUser;
+  PetscCall(InputsRead(run_dir_path(dir), &inputs));
+  inputs_move(&inputs, whole);
+  for (const Input *i = inputs.input; i < inputs.input + inputs.n; ++i) write_line(out, i->key, &i->seal, i->path);
+  PetscCall(InputsClear(&inputs));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode InputsMoved(MPI_Comm comm, RunDir *dir, const Case *whole)
+{
+  PetscFunctionBeginUser;
+  const PetscErrorCode code = Write(comm, dir, ListMoved, whole);
   PetscFunctionReturn(code);
 }
 
@@ -164,6 +200,34 @@ PetscErrorCode InputsClear(Inputs *inputs)
   PetscCall(PetscFree(inputs->input));
   inputs->n = 0;
   PetscFunctionReturn(0);
+}
+
+/* Length of the folder of a path, with its slash. */
+static size_t folder_length(const char *path)
+{
+  const char *slash = strrchr(path, '/');
+  return slash ? (size_t)(slash + 1 - path) : 0;
+}
+
+/* A file of that key, or one that this includes. */
+static void move(Input *input, const CaseFile *file, const char *old)
+{
+  const size_t key = strlen(file->key), folder = folder_length(old);
+  char path[PETSC_MAX_PATH_LEN];
+  if (!strcmp(input->key, file->key)) PetscStrncpy(input->path, file->path, sizeof input->path);
+  if (strncmp(input->key, file->key, key) || input->key[key] != ',' || strncmp(input->path, old, folder)) return;
+  const int n = snprintf(path, sizeof path, "%.*s%s", (int)folder_length(file->path), file->path, input->path + folder);
+  if (n < (int)sizeof path) PetscStrncpy(input->path, path, sizeof input->path);
+}
+
+void inputs_move(Inputs *inputs, const Case *c)
+{
+  char old[PETSC_MAX_PATH_LEN] = "";
+  for (PetscInt f = 0; f < c->n_files; ++f) {
+    for (PetscInt k = 0; k < inputs->n; ++k)
+      if (!strcmp(inputs->input[k].key, c->files[f].key)) PetscStrncpy(old, inputs->input[k].path, sizeof old);
+    for (PetscInt k = 0; k < inputs->n; ++k) move(&inputs->input[k], &c->files[f], old);
+  }
 }
 
 /* A law is the library that the command line names now. */

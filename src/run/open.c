@@ -110,6 +110,7 @@ static PetscErrorCode Rewind(Run *r, PetscInt step, Diag *diag)
   if (errors || r->failed) PetscFunctionReturn(0);
   PetscCall(RunWritten(r, RunDirRewind(r->dir, states, step)));
   output_resumed_at(r->output, r->model->step);
+  if (!r->failed) PetscCall(RunWritten(r, InputsMoved(r->comm, r->dir, r->whole)));
   if (!r->failed) PetscCall(WriteCase(r));
   if (!r->failed) PetscCall(RunWriteStages(r));
   if (!r->failed) PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_TRUE, r->events)));
@@ -160,7 +161,7 @@ static PetscErrorCode CheckInputs(const Run *r, Diag *diag, PetscBool *same)
   char changed[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBeginUser;
-  PetscCall(FoundChanged(r->comm, run_dir_path(r->dir), PETSC_FALSE, changed));
+  PetscCall(FoundChanged(r->comm, run_dir_path(r->dir), r->whole, changed));
   if (!changed[0]) PetscFunctionReturn(0);
   *same = PETSC_FALSE;
   diag_error(diag, NULL, "'%s' has changed since the run in '%s' read it", changed, run_dir_path(r->dir));

@@ -18,7 +18,7 @@ static PetscErrorCode ReadRunCase(const Verification *v, Diag *diag, char **text
   PetscCall(FoundCase(v->comm, v->options->run, text, reason));
   if (!*text)
     diag_error(diag, NULL, "'%s' is no run directory: %s/case.yaml: %s", v->options->run, v->options->run, reason);
-  else PetscCall(FoundChanged(v->comm, v->options->run, PETSC_TRUE, changed));
+  else PetscCall(FoundChanged(v->comm, v->options->run, NULL, changed));
   if (changed[0]) diag_error(diag, NULL, "'%s' has changed since the run in '%s' read it", changed, v->options->run);
   PetscFunctionReturn(0);
 }

@@ -132,4 +132,36 @@ END
   expect "another height" 2 "$talus" run --resume geo
   says err.txt "/height.geo' has changed since the run in 'geo' read it"
 fi
+
+# A run that has moved with its files goes on where it is told where they are, as it would have
+cat >slow.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, end: 0.02, step: 1e-3}
+grid: {box: {min: [0, 0], max: [1, 2]}, size: 0.25}
+bodies: [{name: s, mesh: block.msh, region: block, points_per_cell: 4, material: m}]
+materials: {m: {law: neo-hookean, density: 1800, young: 1e6, poisson: 0.3}}
+boundary: [{name: base, on: {boundary: bottom}, fix: [x, y]}]
+loads: {gravity: [0, -10]}
+measures: {m: {energy: kinetic}}
+checkpoint: {steps: 8}
+output: {every: end}
+END
+mkdir home && mv slow.yaml home && cp block.msh home
+expect "whole" 0 "$talus" run home/slow.yaml --out home/whole --quiet
+expect "cut off" 0 "$talus" run home/slow.yaml --out home/cut --quiet
+turn
+mv home away && cp -r away/cut away/again && rm away/again/checkpoint_000000020.h5
+expect "not told where" 2 "$talus" run --resume away/again
+says err.txt "cannot read" "say where it is (from the folder of the run): --set bodies[0].mesh=PATH"
+expect "told where" 0 on_ranks $ranks "$talus" run --resume away/again --quiet --set bodies[0].mesh=../block.msh
+says away/again/files.txt "bodies[0].mesh = " "away/again/../block.msh"
+grep -q "resumed = step 16" away/again/log.txt || fail "$name: $(grep resumed away/again/log.txt)"
+[ "$ranks" != 1 ] || cmp -s away/whole/history.csv away/again/history.csv || fail "$name: another history"
+mesh 1.5
+cp -r away/cut away/other && rm away/other/checkpoint_000000020.h5
+expect "another mesh there" 2 "$talus" run --resume away/other --set bodies[0].mesh=../../block.msh
+says err.txt "away/other/../../block.msh' has changed since the run in 'away/other' read it"
+expect "another thing" 2 "$talus" run --resume away/other --set bodies[0].points_per_cell=9
+says err.txt "a resumed run cannot change bodies[0].points_per_cell" "where files are"
 finish

@@ -4,6 +4,7 @@
 #include <unistd.h>
 #include "cli/cli.h"
 #include "input/case_file.h"
+#include "output/inputs.h"
 #include "run/run.h"
 #include "verify/verify.h"
 
@@ -27,7 +28,7 @@ const CliUsage cli_run_usage = {
     "minutes (checkpoint: in the case) and when a signal asks the run to leave (SIGINT, SIGTERM, SIGHUP, SIGUSR1 ...)\n"
     "the whole state is put away there; with --resume a run that was cut off goes on as if nothing had been. Then\n"
     "--set may change checkpoint, newton, linear, parallel, petsc, analysis.smallest and .largest, grid.outside and,\n"
-    "in dynamics, analysis.end and .until.\n"
+    "in dynamics, analysis.end and .until, and say where the files of a run are that has moved.\n"
     "If the case has a reference.yaml beside it that knows this very case, the results are compared with it.",
   .examples =
     "talus run cases/cantilever/case.yaml\n"
@@ -43,6 +44,26 @@ const CliUsage cli_run_usage = {
 static const char *const may_change[] = {
   "checkpoint",       "newton",       "linear",         "parallel",     "petsc", "analysis.smallest",
   "analysis.largest", "analysis.end", "analysis.until", "grid.outside", NULL};
+
+/* The last word of a key. */
+static const char *last_word(const char *key, int n)
+{
+  while (n > 0 && key[n - 1] != '.') --n;
+  return key + n;
+}
+
+/* Does PATH=VALUE say where a file of the run is now? Its contents are compared later. */
+static PetscBool says_where(const char *set, const Inputs *inputs)
+{
+  const int n = (int)strcspn(set, "=");
+  const char *word = last_word(set, n);
+  const size_t length = (size_t)(set + n - word);
+  for (PetscInt k = 0; k < inputs->n; ++k) {
+    const char *key = inputs->input[k].key, *own = last_word(key, (int)strlen(key));
+    if (!strchr(key, ',') && strlen(own) == length && !strncmp(own, word, length)) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
 
 /* PATH=VALUE names one of these, or a key below it. */
 static PetscBool may_change_on_resume(const char *set)
@@ -97,9 +118,11 @@ static PetscErrorCode CheckArguments(const CliArguments *a, PetscInt n_set, cons
                                      int *exit_code)
 {
   const char *folder = cli_value(a, "resume");
+  Inputs inputs = {0};
 
   PetscFunctionBeginUser;
   *ok = PETSC_FALSE;
+  if (folder) PetscCall(InputsRead(folder, &inputs));
   if (!folder && !a->n_words)
     PetscCall(CliUsageError(exit_code,
                             "usage: talus run CASE [options] (options of PETSc go to the end: they take the "
@@ -111,15 +134,16 @@ static PetscErrorCode CheckArguments(const CliArguments *a, PetscInt n_set, cons
                             "sense beside it"));
   else *ok = PETSC_TRUE;
   for (PetscInt i = 0; folder && *ok && i < n_set; ++i) {
-    if (may_change_on_resume(set[i])) continue;
+    if (may_change_on_resume(set[i]) || says_where(set[i], &inputs)) continue;
     PetscCall(CliUsageError(
       exit_code,
       "it may change checkpoint, newton, linear, petsc, analysis.smallest, "
-      "analysis.largest, grid.outside and, in dynamics, analysis.end and analysis.until; for all else start a "
-      "new run: talus run DIR/case.yaml --out ANOTHER --set ...",
+      "analysis.largest, grid.outside, where files are and, in dynamics, analysis.end and analysis.until; for all else "
+      "start a new run: talus run DIR/case.yaml --out ANOTHER --set ...",
       "a resumed run cannot change %.*s", (int)strcspn(set[i], "="), set[i]));
     *ok = PETSC_FALSE;
   }
+  PetscCall(InputsClear(&inputs));
   PetscFunctionReturn(0);
 }
 
@@ -135,6 +159,22 @@ static void choose_files(const CliArguments *a, char file[PETSC_MAX_PATH_LEN], c
     if (asked) PetscStrncpy(out, asked, PETSC_MAX_PATH_LEN);
     else default_out(file, out, PETSC_MAX_PATH_LEN);
   }
+}
+
+/* Files that the run in the folder has read and that are not there any more may have moved with it. */
+static PetscErrorCode HintMoved(const char *folder, Diag *diag)
+{
+  Inputs inputs;
+
+  PetscFunctionBeginUser;
+  PetscCall(InputsRead(folder, &inputs));
+  for (const Input *i = inputs.input; i < inputs.input + inputs.n; ++i) {
+    if (strchr(i->key, ',') || !access(i->path, F_OK) || !strcmp(i->key, "initial.run")) continue;
+    diag_hint(diag, "where it has moved, say where it is (from the folder of the run): --set %s=PATH", i->key);
+    break;
+  }
+  PetscCall(InputsClear(&inputs));
+  PetscFunctionReturn(0);
 }
 
 static PetscErrorCode ReadAndRun(const CliArguments *a, PetscInt n_set, const char *const *set, int *exit_code)
@@ -162,6 +202,7 @@ static PetscErrorCode ReadAndRun(const CliArguments *a, PetscInt n_set, const ch
                             .warnings = stderr,
                             .summary = &summary};
     PetscCall(RunCase(PETSC_COMM_WORLD, c, &run, diag, NULL, &result));
+    if (cli_flag(a, "resume") && result == RUN_BAD_INPUT) PetscCall(HintMoved(out, diag));
     if (summary.reason[0]) diag_error(diag, NULL, "%s", summary.reason);
     if (summary.resumable)
       diag_hint(diag, "talus run --resume %s goes on from step %d", out, (int)summary.checkpoint_step);

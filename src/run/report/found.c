@@ -72,7 +72,7 @@ PetscErrorCode FoundIsCase(const Case *c, const char *text, PetscBool *is)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode FoundChanged(MPI_Comm comm, const char *folder, PetscBool runs, char file[PETSC_MAX_PATH_LEN])
+PetscErrorCode FoundChanged(MPI_Comm comm, const char *folder, const Case *resumed, char file[PETSC_MAX_PATH_LEN])
 {
   Inputs inputs = {0};
   PetscMPIInt rank;
@@ -81,8 +81,9 @@ PetscErrorCode FoundChanged(MPI_Comm comm, const char *folder, PetscBool runs, c
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   file[0] = '\0';
   if (!rank) PetscCall(InputsRead(folder, &inputs));
+  if (resumed) inputs_move(&inputs, resumed);
   for (PetscInt k = 0; k < inputs.n && !file[0]; ++k)
-    if ((runs || !input_is_run(&inputs.input[k])) && input_changed(&inputs.input[k]))
+    if ((!resumed || !input_is_run(&inputs.input[k])) && input_changed(&inputs.input[k]))
       PetscCall(PetscStrncpy(file, inputs.input[k].path, PETSC_MAX_PATH_LEN));
   PetscCall(InputsClear(&inputs));
   PetscCallMPI(MPI_Bcast(file, PETSC_MAX_PATH_LEN, MPI_CHAR, 0, comm));

@@ -68,7 +68,7 @@ static PetscErrorCode LookForRun(const Members *members, Member *m, const Case *
   PetscFunctionBeginUser;
   PetscCall(FoundCase(PETSC_COMM_SELF, m->folder, &text, reason));
   if (text) PetscCall(FoundIsCase(c, text, &same));
-  if (same) PetscCall(FoundChanged(PETSC_COMM_SELF, m->folder, PETSC_TRUE, changed));
+  if (same) PetscCall(FoundChanged(PETSC_COMM_SELF, m->folder, NULL, changed));
   if (changed[0]) same = PETSC_FALSE;
   m->replace = members->force || (file_exists(m->folder, "case.yaml") && (!text || same));
   if (same && !members->force) {

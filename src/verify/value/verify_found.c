@@ -46,7 +46,7 @@ static PetscErrorCode TakeFrom(const Verification *v, const char *folder, Verify
   PetscCall(FoundCase(v->comm, folder, &text, reason));
   if (text) PetscCall(FoundIsCase(c, text, found));
   PetscCall(PetscFree(text));
-  if (*found) PetscCall(FoundChanged(v->comm, folder, PETSC_TRUE, changed));
+  if (*found) PetscCall(FoundChanged(v->comm, folder, NULL, changed));
   if (*found && changed[0]) *found = PETSC_FALSE;
   if (*found && v->rank == 0) PetscCall(ReadFinished(v, folder, r, c, found));
   PetscCallMPI(MPI_Bcast(found, 1, MPIU_BOOL, 0, v->comm));
