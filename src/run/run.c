@@ -5,17 +5,21 @@
 #include "run/report/summary.h"
 #include "run/watch/events.h"
 
+/* Stops that are no farther apart are one, s. */
+static PetscReal closest(const Schedule *s, const Run *r) { return NO_STEP * PetscMin(s->every, r->c->analysis.step); }
+
 /* Time until the schedule next wants the run to stop exactly. */
-static PetscReal until_next(const Schedule *s, PetscReal time, PetscReal end)
+static PetscReal until_next(const Schedule *s, const Run *r)
 {
-  if (s->every <= 0) return end - time;
-  return PetscMin((PetscReal)(s->count + 1) * s->every, end) - time;
+  const PetscReal end = r->c->analysis.end, next = (PetscReal)(s->count + 1) * s->every;
+  return (s->every <= 0 || next > end - closest(s, r) ? end : next) - r->model->time;
 }
 
-static PetscBool is_due(Schedule *s, PetscReal time, PetscInt step)
+static PetscBool is_due(Schedule *s, const Run *r)
 {
+  const PetscReal time = r->model->time + closest(s, r);
   if (s->every == 0) return PETSC_FALSE;
-  if (s->every < 0) return step % (PetscInt)(-s->every) == 0;
+  if (s->every < 0) return r->model->step % (PetscInt)(-s->every) == 0;
   if (time < (PetscReal)(s->count + 1) * s->every * (1 - 1e-9)) return PETSC_FALSE;
   s->count = (PetscInt)(time / s->every * (1 + 1e-9));
   return PETSC_TRUE;
@@ -128,8 +132,8 @@ static PetscErrorCode AfterStep(Run *r, const StepReport *report, PetscInt point
   PetscCall(LossesLogStep(r->model, r->dir, report));
   PetscCall(RunWritten(r, EventsWatch(r->model, r->dir, PETSC_FALSE, r->events)));
   if (!r->strength.n && !r->limit.n) PetscCall(RunDirProgress(r->dir, &progress)); /* each factor tells of itself */
-  if (is_due(&r->rows, r->model->time, r->model->step)) PetscCall(RunWriteRow(r));
-  if (is_due(&r->states, r->model->time, r->model->step)) PetscCall(RunWriteState(r));
+  if (is_due(&r->rows, r)) PetscCall(RunWriteRow(r));
+  if (is_due(&r->states, r)) PetscCall(RunWriteState(r));
   PetscFunctionReturn(0);
 }
 
@@ -197,8 +201,7 @@ static PetscErrorCode Advance(Run *r)
 
   PetscFunctionBeginUser;
   while (!r->failed && !r->until.ended && r->model->time < end * (1 - 1e-12)) {
-    const PetscReal limit =
-      PetscMin(until_next(&r->states, r->model->time, end), until_next(&r->rows, r->model->time, end));
+    const PetscReal limit = PetscMin(until_next(&r->states, r), until_next(&r->rows, r));
     PetscCall(ModelStep(r->model, limit, &report));
     if (report.outcome == STEP_INTERRUPTED) {
       PetscCall(Interrupted(r, "a signal"));

@@ -44,8 +44,11 @@ PetscReal wall_bend(const WallPlace *place)
   return (sum + PetscSqrtReal(PetscMax(0, 2 * squares - PetscSqr(sum)))) / 2;
 }
 
-/* But for rounding. */
-static PetscBool is_later(PetscReal t, PetscReal than) { return t > than * (1 + 1e-9); }
+/* But for rounding, and by what no step is worth while. */
+static PetscBool is_later(const Walls *walls, PetscReal t, PetscReal than)
+{
+  return t > than * (1 + 1e-9) && t - than > NO_STEP * walls->c->analysis.step;
+}
 
 /* A step that ends at `until` still meets the wall, one that ends at `from` does not yet. In what a search tries no
  * time passes: there stands what it begins with. */
@@ -54,15 +57,16 @@ PetscBool wall_stands(const Walls *walls, PetscInt k, PetscReal t)
   const WallSpec *w = walls->c->walls + k;
   if (case_time(walls->c, t) < t) return wall_comes(walls, k, t);
   if (!walls->wall[k].form || w->absent) return PETSC_FALSE;
-  if (w->from > 0 && !is_later(t, w->from)) return PETSC_FALSE;
-  return !w->has_until || !is_later(t, w->until);
+  if (w->from > 0 && !is_later(walls, t, w->from)) return PETSC_FALSE;
+  return !w->has_until || !is_later(walls, t, w->until);
 }
 
 PetscBool wall_comes(const Walls *walls, PetscInt k, PetscReal t)
 {
   const WallSpec *w = walls->c->walls + k;
   const PetscReal now = case_time(walls->c, t);
-  return walls->wall[k].form && !w->absent && !is_later(w->from, now) && (!w->has_until || is_later(w->until, now));
+  return walls->wall[k].form && !w->absent && !is_later(walls, w->from, now) &&
+         (!w->has_until || is_later(walls, w->until, now));
 }
 
 PetscReal walls_until_change(const Walls *walls, PetscReal t)
@@ -71,8 +75,8 @@ PetscReal walls_until_change(const Walls *walls, PetscReal t)
   if (case_seeks(&walls->c->analysis) && t >= walls->c->analysis.end) return next;
   for (const WallSpec *w = walls->c->walls; w < walls->c->walls + walls->c->n_walls; ++w) {
     if (w->absent) continue;
-    if (is_later(w->from, t)) next = PetscMin(next, w->from - t);
-    if (w->has_until && is_later(w->until, t)) next = PetscMin(next, w->until - t);
+    if (is_later(walls, w->from, t)) next = PetscMin(next, w->from - t);
+    if (w->has_until && is_later(walls, w->until, t)) next = PetscMin(next, w->until - t);
   }
   return next;
 }

@@ -3,6 +3,9 @@
 #include "case/kinematics/kinematics.h"
 #include "case/spec/measure.h"
 
+/* Of a step: times at which steps must end, but closer together than that, are one. */
+#define NO_STEP 1e-4
+
 typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC, ANALYSIS_FACTOR, ANALYSIS_LIMIT, ANALYSIS_EXPLICIT } AnalysisType;
 /* Which velocity of the nodes strains the points of explicit dynamics: that which the points have given them anew
  * at the end of a step, or that of the balance of momentum. */

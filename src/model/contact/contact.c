@@ -1,6 +1,7 @@
 /* Walls and interfaces in a step: what they do to motion, momentum and energy. */
 #include "model/model_private.h"
 
+#define BRIEF 0.1 /* of the step that is wanted: shorter ones are those that outputs and changes cut off */
 #define SUM_NUMBERS ((PetscInt)(sizeof(ContactSum) / sizeof(PetscReal)))
 
 static PetscBool rubs(ContactKind kind) { return kind == CONTACT_FRICTION || kind == CONTACT_STICK; }
@@ -164,6 +165,13 @@ static PetscErrorCode Project(const Model *m, PetscReal *v, PetscReal *given, Pe
   PetscFunctionReturn(0);
 }
 
+/* Of what is too deep as the step begins: to close that in a step much shorter than the others takes a force that grows
+ * with the square of its shortness, and the next one takes it for what acts. So it is closed in proportion. */
+static PetscReal left_deep(const Model *m, PetscReal dt)
+{
+  return contact_holds(m) && dt < BRIEF * m->control.next ? 1 - dt / m->control.next : 0;
+}
+
 /* What was in contact starts with its wall's velocity, as a prescribed node does. */
 PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
 {
@@ -171,7 +179,9 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
   if (!m->contact) PetscFunctionReturn(0);
   contact_again(m->contact);
   /* no time passes where an equilibrium is sought: walls stand still */
-  contact_prepare(m->contact, m->time, m->initial.seeking ? 0 : dt, inertia, share_of_force(m));
+  ContactShare share = share_of_force(m);
+  share.leaves = left_deep(m, dt);
+  contact_prepare(m->contact, m->time, m->initial.seeking ? 0 : dt, inertia, share);
   for (RigidWall *b = m->contact->rigid; b < m->contact->rigid + m->contact->n_rigid; ++b)
     rigid_begin(b, m->walls, m->c, m->time, dt, share_of_force(m).mean, m->scheme->middle);
   if (!contact_holds(m)) PetscFunctionReturn(0);

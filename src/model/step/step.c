@@ -2,6 +2,7 @@
 #include "model/model_private.h"
 
 #define ROUNDING 1e-9 /* of a step: times are sums */
+#define STRETCH 1e-3  /* of a step: by so much one may be longer, so that none is left over */
 
 /* What searches try is no time. */
 static PetscBool seeks(const Model *m)
@@ -17,8 +18,18 @@ static void begin_anew(Model *m)
   if (case_begins_within(m->c, m->time, m->time + (1 - ROUNDING) * step)) m->control.next = step;
 }
 
-/* How long the next step of dt may be at most: one longer than `step` ends where a table turns, the last two of the
- * way there in equal parts, or it is of `step`. */
+/* The next step on the way to a time at which one must end. In implicit dynamics the last two have equal parts of the
+ * way, or the last one a thousandth more: one that is much shorter than those beside it solves for light nodes with
+ * next to nothing but their consistent mass, and what they get the next step takes for their acceleration. */
+static PetscReal evenly(const Model *m, PetscReal way)
+{
+  const PetscReal dt = m->control.next;
+  const PetscBool alike = (PetscBool)(m->scheme->inertia && m->scheme != &time_scheme_explicit && !seeks(m));
+  if (!alike || way <= (1 + ROUNDING) * dt || way >= 2 * dt) return PetscMin(way, dt);
+  return way <= (1 + STRETCH) * dt ? way : way / 2;
+}
+
+/* How long the next step of dt may be at most: one longer than `step` ends where a table turns, or it is of `step`. */
 static PetscReal until_corner(const Model *m, PetscReal dt)
 {
   const PetscReal step = m->c->analysis.step;
@@ -29,12 +40,12 @@ static PetscReal until_corner(const Model *m, PetscReal dt)
 }
 
 /* How long a step of dt may be at most: where it may grow, also one of `step` or less ends at a peak of what is asked
- * for at the ends of steps. */
+ * for at the ends of steps; in dynamics those of the step after it are seen, too. */
 static PetscReal until_peak(const Model *m, PetscReal dt)
 {
   const AnalysisSpec *a = &m->c->analysis;
   if (seeks(m) || a->largest <= (1 + ROUNDING) * a->step || a->type == ANALYSIS_EXPLICIT) return PETSC_MAX_REAL;
-  const PetscReal end = m->time + dt, peak = case_peak_within(m->c, m->time, end);
+  const PetscReal end = m->time + (m->scheme->inertia ? 2 : 1) * dt, peak = case_peak_within(m->c, m->time, end);
   return peak < end ? peak - m->time : PETSC_MAX_REAL;
 }
 
@@ -56,8 +67,8 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
   const PetscReal peak = until_peak(m, PetscMin(back, PetscMin(limit, m->control.next)));
   const PetscBool returning = (PetscBool)(back < PetscMin(PetscMin(limit, peak), m->control.next));
   limit = PetscMin(PetscMin(limit, back), peak);
-  const PetscBool shortened = limit < m->control.next;
-  PetscReal dt = PetscMin(limit, m->control.next);
+  PetscReal dt = evenly(m, limit);
+  const PetscBool shortened = dt < m->control.next;
   StepStart start;
   EnergyStep energy;
 

@@ -88,6 +88,7 @@ typedef struct {
   PetscBool yields; /* may it at all? What it strains by is no millionth then */
   PetscBool fades;  /* does it move through its nodes, in statics that have not failed lately? */
   PetscReal asked;  /* share of the usual that may stay of gaps */
+  PetscReal leaves; /* share of what is too deep at the start of a very short step that the next one closes */
   PetscReal mean, back, lag;
 } ContactShare;
 

@@ -94,6 +94,7 @@ PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *sce
   c->ahead = c->reach;
   if (!place_of(s, c, scene->end, x, way, &place)) return PETSC_FALSE;
   for (int d = 0; d < 3; ++d) c->slip[d] = way[d] - c->swept[d], c->normal[d] = place.normal[d];
+  place.gap += s->share.leaves * PetscMax(0, -c->open);
   c->gap = place.gap;
   c->law.grips = (PetscBool)(s->grips && contact_touched(c));
   c->state = contact_law(&c->law, &place, c->slip, &c->multiplier, &c->now, K);

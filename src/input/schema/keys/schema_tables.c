@@ -265,8 +265,8 @@ static const SchemaEntry output_entries[] = {
   KEY("fields", FIELDS, NULL,
       "fields to write, see `talus list fields`; what points of a loaded law keep, too (docs/plugin.md)",
       .fallback = "[displacement, velocity, stress]", AT(OutputSpec, fields), .count = offsetof(OutputSpec, n_fields)),
-  KEY("every", EVERY, NULL, "when states are written: a step ends there, and is shorter for it", .fallback = "end",
-      AT(OutputSpec, every)),
+  KEY("every", EVERY, NULL, "when states are written: a step ends there, and the last two before it are shorter for it",
+      .fallback = "end", AT(OutputSpec, every)),
   KEY("history", EVERY, NULL,
       "when rows of history.csv are written, as `every`; what is a mean over a step in dynamics (forces of walls, "
       "interfaces and boundaries, tractions) is in a row the mean since the row before, with `end` over the whole run, "
