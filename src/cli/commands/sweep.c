@@ -32,7 +32,7 @@ const CliUsage cli_sweep_usage = {
     "goes on: members that are done are kept, those that were cut off go on from their checkpoints.\n"
     "The exit code is 1 if a member did not come to its end. docs/sweep.md tells the language of sweep.yaml.",
   .examples =
-    "talus sweep cases/cantilever --over materials.rubber.young=30e6:90e6:20e6 --over grid.size=0.25,0.125\n"
+    "talus sweep cases/cantilever --over materials.rubber.young=50e6:90e6:20e6 --over grid.size=0.25,0.125\n"
     "talus sweep cases/granular-collapse --over materials.grains.friction_angle=20,30,40 --measure front --jobs 2",
   .options = options_known,
   .min_words = 1,
