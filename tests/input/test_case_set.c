@@ -108,6 +108,10 @@ static void Mistakes(void **state)
     {"materials.rubber={young: 1}", "error: key 'law' of materials.rubber is missing"},
     {"measures.tip.of.tracer=[0, 0]",
      "--set measures.tip.of.tracer=[0, 0]: error: there is no 'tip' in measures\n  hint: there are no names\n"},
+    {"measures.tip={displacment: x, of: {tracer: [0, 0]}}",
+     "error: key 'displacment' of measures.tip is not known\n  hint: did you mean 'displacement'?"},
+    {"analysis.type=implicit", "hint: it is called `dynamic` here"},
+    {"kinematics=plane-stress", "hint: there is no plane stress"},
     {"newton.ease=many", "--set newton.ease=many: error: newton.ease must be a whole number >= 0, not 'many'"},
     {"newton.ease=", "not empty"},
     {"newton", "there is no '='"},
@@ -145,7 +149,7 @@ static void Mistakes(void **state)
  * parent. */
 static void Resolve(void **state)
 {
-  const char *const set[] = {"newton.ease=3"};
+  const char *const set[] = {"newton.ease=3", "grid.size=1", "bodies[0].shape.box={min: [1, 0], max: [3, 1]}"};
   char name[64], *text = NULL;
   size_t size;
   Diag *diag;
@@ -153,9 +157,11 @@ static void Resolve(void **state)
   (void)state;
   write_case(PLAIN, strlen(PLAIN), name);
   DiagCreate(&diag);
-  assert_int_equal(CaseRead(PETSC_COMM_WORLD, name, 1, set, diag, &c), 0);
+  assert_int_equal(CaseRead(PETSC_COMM_WORLD, name, 3, set, diag, &c), 0);
   unlink(name);
-  diag_error(diag, "bodies[0].shape.box.min", "box");
+  diag_error(diag, "grid.box.min", "box");
+  diag_error(diag, "grid", "in part");
+  diag_error(diag, "bodies[0].shape", "all of it");
   diag_error(diag, "materials.rubber.young", "value");
   diag_error(diag, "bodies[0].region", "absent");
   diag_error(diag, "newton.ease", "argument");
@@ -163,7 +169,11 @@ static void Resolve(void **state)
   FILE *out = open_memstream(&text, &size);
   DiagFlush(diag, out);
   fclose(out);
-  assert_non_null(strstr(text, ":6:32: error: box\n"));
+  assert_non_null(strstr(text, ":4:14: error: box\n"));
+  assert_non_null(strstr(text,
+                         ":4:1: error: in part\n  grid: {box: {min: [0, 0], max: [4, 2]}, size: 0.5}  # --set "
+                         "grid.size=1\n  ^~~~\n"));
+  assert_non_null(strstr(text, "--set bodies[0].shape.box={min: [1, 0], max: [3, 1]}: error: all of it\n"));
   assert_non_null(
     strstr(text, ":8:52: error: value\n    rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}\n"));
   assert_non_null(strstr(text, ":6:5: error: absent\n"));

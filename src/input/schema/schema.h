@@ -183,6 +183,12 @@ PetscBool schema_hint_name(SchemaReader *r, const SchemaTable *table, const Yaml
 /* What others call one of these n words, or what is not there at all; PETSC_FALSE and nothing: it is neither
  * (schema_synonyms.c). */
 PetscBool schema_hint_synonym(SchemaReader *r, const char *word, PetscInt n, const char *const *words);
+/* The same of a key that is not known, and where it is what stands behind a comma in place of a point. */
+PetscBool schema_hint_key(SchemaReader *r, const YamlNode *node, PetscInt n, const char *const *words);
+/* The one of these n words, ended by NULL, that another one stands for; NULL: none. */
+const char *schema_meant(const char *word, PetscInt n, const char *const *words);
+/* Has a key of the mapping been told to stand for this one? That this one is missing is no other mistake. */
+PetscBool schema_is_meant(const YamlNode *mapping, const char *key);
 /* "did you mean 'x'?", or the list of all. */
 void schema_hint_words(SchemaReader *r, const char *word, PetscInt n, const char *const *words);
 /* Read a vector of dim numbers without messages; returns how many there were. */

@@ -79,7 +79,7 @@ static PetscErrorCode UnknownKeys(SchemaReader *r, const SchemaTable *table, con
   PetscFunctionBeginUser;
   const PetscInt n = words_of(r, table, words);
   for (PetscInt i = 0; i < mapping->n; ++i) {
-    const YamlNode *child = mapping->child[i];
+    YamlNode *child = mapping->child[i];
     entry = find_entry(table, child->key);
     if (entry.key && schema_fits(r, &entry)) continue;
     if (entry.key) {
@@ -91,7 +91,8 @@ static PetscErrorCode UnknownKeys(SchemaReader *r, const SchemaTable *table, con
       if (!strcmp(child->key, "sphere")) diag_hint(r->diag, "in two dimensions there is 'circle'");
     } else {
       SchemaKeyError(r, child, "key '%s' of %s is not known", child->key, yaml_path(mapping, path, sizeof(path)));
-      if (schema_hint_synonym(r, child->key, n, words)) continue;
+      child->meant = schema_meant(child->key, n, words);
+      if (schema_hint_key(r, child, n, words)) continue;
       if (diag_nearest(child->key, words) || !schema_hint_elsewhere(r, table, child->key))
         schema_hint_words(r, child->key, n, words);
     }
@@ -99,9 +100,11 @@ static PetscErrorCode UnknownKeys(SchemaReader *r, const SchemaTable *table, con
   PetscFunctionReturn(0);
 }
 
-static void read_missing(SchemaReader *r, const SchemaEntry *entry, const YamlNode *mapping)
+static void check_required(SchemaReader *r, const SchemaEntry *entry, const YamlNode *mapping)
 {
   char path[512], expected[300];
+  if (!entry->required || !schema_fits(r, entry)) return;
+  if (yaml_find(mapping, entry->key) || schema_is_meant(mapping, entry->key)) return;
   SchemaKeyError(r, mapping, "key '%s' of %s is missing", entry->key, yaml_path(mapping, path, sizeof(path)));
   diag_hint(r->diag, "%s: %s (%s)", entry->key, entry->help,
             schema_expected(entry, r->dim, expected, sizeof(expected)));
@@ -163,8 +166,8 @@ static PetscErrorCode ReadKey(SchemaReader *r, const SchemaTable *table, const S
     if (entry->present) *(PetscBool *)((char *)target + entry->present - 1) = PETSC_TRUE;
     PetscCall(SchemaReadEntry(r, entry, node, target));
     hint_empty(r, entry, node);
-  } else if (entry->required) read_missing(r, entry, mapping);
-  else if (entry->always || (entry->fallback && !in_group(table, entry->key))) PetscCall(ReadDefault(r, entry, target));
+  } else if (!entry->required && (entry->always || (entry->fallback && !in_group(table, entry->key))))
+    PetscCall(ReadDefault(r, entry, target));
   PetscFunctionReturn(0);
 }
 
@@ -172,6 +175,7 @@ static void check_group(SchemaReader *r, const SchemaTable *table, const SchemaG
 {
   const YamlNode *first = NULL, *second = NULL;
   const char *key;
+  PetscBool meant = PETSC_FALSE;
   char path[512], words[400] = "";
   for (PetscInt k = 0; (key = schema_group_key(table, group, k)); ++k) {
     const YamlNode *node = yaml_find(mapping, key);
@@ -180,9 +184,10 @@ static void check_group(SchemaReader *r, const SchemaTable *table, const SchemaG
     snprintf(words + used, sizeof(words) - used, "%s'%s'", join, key);
     if (node && !first) first = node;
     else if (node && !second) second = node;
+    meant |= schema_is_meant(mapping, key);
   }
   yaml_path(mapping, path, sizeof(path));
-  if (!first && group->kind != GROUP_AT_MOST_ONE)
+  if (!first && !meant && group->kind != GROUP_AT_MOST_ONE)
     SchemaKeyError(r, mapping, "%s needs %s %s", path, group->kind == GROUP_ONE ? "one of" : "at least one of", words);
   if (second && group->kind != GROUP_AT_LEAST_ONE) {
     const YamlNode *later = second->index > first->index ? second : first;
@@ -196,11 +201,12 @@ PetscErrorCode SchemaReadTable(SchemaReader *r, const SchemaTable *table, const 
   SchemaEntry entry;
 
   PetscFunctionBeginUser;
-  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group)
-    check_group(r, table, group, mapping);
   for (PetscInt i = 0; (entry = schema_entry(table, i)).key; ++i) PetscCall(ReadKey(r, table, &entry, mapping, target));
   if (table->open) PetscCall((*table->open)(r, mapping, target));
   else PetscCall(UnknownKeys(r, table, mapping));
+  for (const SchemaGroup *group = table->groups; group && group->kind != GROUP_NONE; ++group)
+    check_group(r, table, group, mapping);
+  for (PetscInt i = 0; (entry = schema_entry(table, i)).key; ++i) check_required(r, &entry, mapping);
   if (table->check && diag_errors(r->diag) == before) PetscCall((*table->check)(r, mapping, target));
   PetscFunctionReturn(0);
 }
@@ -299,8 +305,8 @@ static PetscBool is_whole(const SchemaTable *table, const YamlNode *mapping)
   return PETSC_TRUE;
 }
 
-/* `--set materials.ruber.young=1` where there is a rubber: a part of something that is not
- * there. */
+/* `--set materials.ruber.young=1` where there is a rubber: a part of something that is not there. What is given whole
+ * (`--set 'materials.steel={...}'`) has a place in that text, and is read with its own mistakes. */
 static PetscErrorCode NotThere(SchemaReader *r, const SchemaTable *table, const YamlNode *child, PetscBool *tell)
 {
   const YamlNode *list = child->parent;
@@ -309,7 +315,8 @@ static PetscErrorCode NotThere(SchemaReader *r, const SchemaTable *table, const 
   PetscInt n = 0;
 
   PetscFunctionBeginUser;
-  *tell = child->argument && !child->key_place.line && child->kind == YAML_MAPPING && !is_whole(table, child);
+  *tell = child->argument && !child->key_place.line && !child->place.line && child->kind == YAML_MAPPING &&
+          !is_whole(table, child);
   if (!*tell) PetscFunctionReturn(0);
   PetscCall(PetscCalloc1(list->n + 1, &names));
   for (PetscInt i = 0; i < list->n; ++i)

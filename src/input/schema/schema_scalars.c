@@ -156,6 +156,7 @@ static SchemaWord find_word(SchemaReader *r, const SchemaEntry *e, const YamlNod
     if (text && !strcmp(text, words[n])) return schema_word(e, n);
   }
   schema_mismatch(r, e, node);
+  if (text && schema_hint_synonym(r, text, n, words)) return schema_word(e, n);
   const char *nearest = text ? diag_nearest(text, words) : NULL;
   if (text && e->registry == (const void *const *)laws)
     diag_hint(r->diag, "%s%s%sa law of your own is loaded by --law %.48s=FILE.so: docs/plugin.md",

@@ -157,6 +157,17 @@ PetscBool yaml_equal(const YamlNode *a, const YamlNode *b)
   return PETSC_TRUE;
 }
 
+PetscInt yaml_argument(const YamlNode *node, PetscBool any)
+{
+  PetscInt last = node->argument;
+  for (PetscInt i = 0; i < node->n && !node->argument; ++i) {
+    const PetscInt argument = yaml_argument(node->child[i], any);
+    if (!argument && !any) return 0;
+    last = PetscMax(last, argument);
+  }
+  return last;
+}
+
 PetscBool yaml_is_null(const YamlNode *node)
 {
   if (node->kind != YAML_SCALAR || !node->plain) return PETSC_FALSE;

@@ -23,6 +23,7 @@ typedef struct YamlNode {
   char *key;       /* if it stands in a mapping */
   YamlPlace place; /* of the value; line 0: not from the file */
   YamlPlace key_place;
+  const char *meant;  /* of a key that is told not to be known: the one that it stands for; else NULL */
   PetscInt argument;  /* 1 + index of the --set that brought it, 0: from the file */
   PetscInt stage;     /* of a case with stages: the one whose words it is among */
   PetscBool repeated; /* of the tree of a stage: that says it again, in the same words */
@@ -71,6 +72,8 @@ PetscBool yaml_equal(const YamlNode *a, const YamlNode *b);
 YamlNode *yaml_find(const YamlNode *mapping, const char *key);
 /* Is it empty: `key:` with nothing behind it, `~` or `null`? */
 PetscBool yaml_is_null(const YamlNode *node);
+/* 1 + index of the last --set that brought the node, or all (any of) that it holds; 0: there is none. */
+PetscInt yaml_argument(const YamlNode *node, PetscBool any);
 /* "bodies[0].shape" for messages; "the file" for the root. Returns buffer. */
 const char *yaml_path(const YamlNode *node, char *buffer, size_t size);
 

@@ -297,6 +297,19 @@ static int tab_near(const Builder *b, int line)
   return 0;
 }
 
+/* A bracket that is not closed is noticed lines below it. */
+static void hint_open(const Builder *b, int line)
+{
+  const char *at = b->text;
+  const YamlPlace place = b->open ? b->open->place : (YamlPlace){0};
+  if (b->argument || place.line == 0 || place.line >= line) return;
+  for (int k = 1; k < place.line && at; ++k) at = strchr(at, '\n') + 1;
+  at += place.column - 1;
+  if (*at != '[' && *at != '{') return;
+  diag_hint(b->diag, "the '%c' in line %d, column %d has no '%c' before this", *at, place.line, place.column,
+            *at == '[' ? ']' : '}');
+}
+
 /* libfyaml's complaints, in our form and without its own follow-up ones. */
 static void take_syntax_errors(Builder *b, struct fy_diag *messages)
 {
@@ -315,6 +328,7 @@ static void take_syntax_errors(Builder *b, struct fy_diag *messages)
     message[strcspn(message, "\n")] = '\0';
     fail(b, &place, message);
     if (strstr(message, "tab")) diag_hint(b->diag, "indent with spaces, YAML does not allow tabs there");
+    else hint_open(b, place.place.line);
   }
 }
 

@@ -63,6 +63,15 @@ static const YamlNode *root_of(const YamlDocument *document, const char **path)
   return stage >= 0 && stage < document->n_stages ? document->stage[stage] : document->root;
 }
 
+/* The line of the file is not all that holds: what changes it stands behind it. */
+static void add_change(const YamlDocument *document, PetscInt argument, char **line, DiagPlace *place)
+{
+  char *both = NULL;
+  if (!*line || asprintf(&both, "%s  # --set %s", *line, document->arguments[argument - 1]) < 0) return;
+  free(*line);
+  place->text = *line = both;
+}
+
 void yaml_resolve(void *context, const char *path, DiagPlace *place)
 {
   YamlDocument *document = context;
@@ -71,7 +80,10 @@ void yaml_resolve(void *context, const char *path, DiagPlace *place)
   char *line = NULL;
   place->file = document->file;
   if (!node || node == root) return;
-  yaml_place(document, node, node->kind != YAML_SCALAR, &line, place);
+  const YamlNode brought = {.argument = yaml_argument(node, PETSC_FALSE)};
+  const PetscInt changed = yaml_argument(node, PETSC_TRUE);
+  yaml_place(document, brought.argument ? &brought : node, node->kind != YAML_SCALAR, &line, place);
+  if (changed && !brought.argument) add_change(document, changed, &line, place);
   /* Diag copies a place at once, but after this function has returned:
    * the document keeps the line until the next call. */
   free(document->resolved);

@@ -89,24 +89,27 @@ static PetscErrorCode Add(MaterialSpec *material, const char *name, PetscReal va
   PetscFunctionReturn(0);
 }
 
-static void unknown_key(SchemaReader *r, const Law *law, const YamlNode *mapping, const YamlNode *node)
+/* Without a law nobody knows which keys it has: those that every material has are told alone. */
+static void unknown_key(SchemaReader *r, const Law *law, const YamlNode *mapping, YamlNode *node)
 {
   const char *words[LAW_MAX_PARAMETERS + ELASTIC_CONSTANTS + 8] = {"law", "density", "amplitude"};
   char path[512];
   PetscInt n = 3;
-  for (int k = 0; !(law && law->elastic) && k < ELASTIC_CONSTANTS; ++k) words[n++] = elastic_constants[k].name;
+  for (int k = 0; law && !law->elastic && k < ELASTIC_CONSTANTS; ++k) words[n++] = elastic_constants[k].name;
   for (const LawParameter *p = law ? law->parameters : NULL;
        p && p->name && n < LAW_MAX_PARAMETERS + ELASTIC_CONSTANTS + 7; ++p)
     words[n++] = p->name;
+  node->meant = schema_meant(node->key, n, words);
+  if (!law && !node->meant) return;
   SchemaKeyError(r, node, "key '%s' of %s is not known", node->key, yaml_path(mapping, path, sizeof(path)));
-  if (!schema_hint_synonym(r, node->key, n, words)) schema_hint_words(r, node->key, n, words);
+  if (!schema_hint_key(r, node, n, words)) schema_hint_words(r, node->key, n, words);
 }
 
 static PetscErrorCode ReadConstants(SchemaReader *r, const Law *law, const YamlNode *mapping, MaterialSpec *material)
 {
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < mapping->n; ++i) {
-    const YamlNode *node = mapping->child[i];
+    YamlNode *node = mapping->child[i];
     const LawParameter *p = law ? find_parameter(law, node->key) : NULL;
     const int elastic = elastic_index(node->key);
     PetscReal value;
@@ -118,8 +121,7 @@ static PetscErrorCode ReadConstants(SchemaReader *r, const Law *law, const YamlN
         PetscCall(ReadConstant(r, &entry, node, &value));
         if (!PetscIsNanReal(value)) PetscCall(Add(material, node->key, value));
       }
-      /* without a law nobody knows which keys it has */
-    } else if (law) unknown_key(r, law, mapping, node);
+    } else unknown_key(r, law, mapping, node);
   }
   PetscFunctionReturn(0);
 }
@@ -131,7 +133,7 @@ static PetscErrorCode FillParameters(SchemaReader *r, const Law *law, const Yaml
   PetscFunctionBeginUser;
   for (const LawParameter *p = law->parameters; p && p->name; ++p) {
     const SchemaEntry entry = schema_law_entry(p);
-    if (yaml_find(mapping, p->name)) continue;
+    if (yaml_find(mapping, p->name) || schema_is_meant(mapping, p->name)) continue;
     if (p->absent) continue;
     if (!entry.required) PetscCall(Add(material, p->name, p->fallback));
     else {
@@ -175,17 +177,21 @@ static void check_pair(SchemaReader *r, const YamlNode *mapping, int first, int 
 
 static PetscErrorCode CheckElastic(SchemaReader *r, const YamlNode *mapping)
 {
+  PetscBool meant = PETSC_FALSE;
   int given[ELASTIC_CONSTANTS], n = 0;
   char path[512];
 
   PetscFunctionBeginUser;
-  for (int k = 0; k < ELASTIC_CONSTANTS; ++k)
-    if (yaml_find(mapping, elastic_constants[k].name)) given[n++] = k;
+  for (int k = 0; k < ELASTIC_CONSTANTS; ++k) {
+    const char *name = elastic_constants[k].name;
+    if (yaml_find(mapping, name)) given[n++] = k;
+    else meant |= schema_is_meant(mapping, name);
+  }
   if (n == 2) check_pair(r, mapping, given[0], given[1]);
   else if (n > 2)
     SchemaKeyError(r, yaml_find(mapping, elastic_constants[given[2]].name),
                    "%s has %d elastic constants; exactly two must be given", yaml_path(mapping, path, sizeof(path)), n);
-  else {
+  else if (!meant) {
     SchemaKeyError(r, mapping, "%s needs two elastic constants, it has %s", yaml_path(mapping, path, sizeof(path)),
                    n ? "one" : "none");
     diag_hint(r->diag, "any two of: %s", elastic_list(ELASTIC_ALL, path, sizeof(path)));
