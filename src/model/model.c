@@ -340,7 +340,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Diag *diag, Model **mod
   m->dim = kinematics_dim(c->kinematics);
   m->time = c->start; /* what a stage moves stands where it begins then */
   PetscCall(OptionsApply(m));
-  PetscCall(MemoryHeld(comm, &m->machine_memory));
+  PetscCall(MemoryHeld(comm, diag, &m->machine_memory));
   PetscCall(OptionsCheck(m, diag));
   PetscCall(Build(m, diag));
   PetscCall(DiagReduce(comm, diag, &errors));

@@ -65,6 +65,8 @@ says without/log.txt "basis = cell, since gimp, the default of mpm, needs a box 
 says without/case.yaml "  cell: {}"
 expect "check of what has no room" 0 env TALUS_MEMORY=0.04 "$talus" check case.yaml
 says err.txt "the run will need about 0.0" "GB of memory, and there are 0.04 GB"
+expect "room in words" 0 on_ranks 2 env TALUS_MEMORY=16GB "$talus" check case.yaml
+[ "$(grep -c "warning: TALUS_MEMORY is '16GB', and counts for nothing: it must be a number > 0, in GB" err.txt)" -eq 1 ] || fail "$name: not told once"
 no_room="TALUS_MEMORY=1e-6 $talus run case.yaml --set petsc.ksp_max_it=1 --set analysis.steps=1 --out small --quiet"
 expect "no factorisation without room" 1 env $no_room --set linear=iterative
 says err.txt "the linear iteration failed, and a factorisation needs more memory than there is"

@@ -1,4 +1,5 @@
 #include "base/process/memory.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,10 +67,21 @@ static PetscReal of_this_machine(void)
   return group > 0 ? PetscMin(group, all) : all;
 }
 
-PetscErrorCode MemoryHeld(MPI_Comm comm, PetscReal *bytes)
+/* Bytes; 0: nothing, or nothing that makes sense. */
+static PetscReal told_memory(Diag *diag)
 {
   const char *told = getenv("TALUS_MEMORY");
-  const PetscReal limit = told ? (PetscReal)strtod(told, NULL) * 1e9 : 0;
+  char *end = NULL;
+  const double size = told ? strtod(told, &end) : 0;
+  if (!told) return 0;
+  if (end > told && !*end && size > 0 && size < INFINITY) return (PetscReal)size * 1e9;
+  diag_warning(diag, NULL, "TALUS_MEMORY is '%s', and counts for nothing: it must be a number > 0, in GB", told);
+  return 0;
+}
+
+PetscErrorCode MemoryHeld(MPI_Comm comm, Diag *diag, PetscReal *bytes)
+{
+  const PetscReal limit = told_memory(diag);
   PetscReal here = 0;
   PetscMPIInt rank;
   MPI_Comm machine;
