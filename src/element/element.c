@@ -49,7 +49,9 @@ static PetscBool start(Element *e)
   const ElementSpec *spec = e->spec;
   Material *m = &e->spec->material;
   if (drive_start(&e->point, m, spec->start.value, spec->pore)) return PETSC_TRUE;
-  diag_error(e->diag, NULL, "the material %s (%s) cannot begin with this stress", m->name, m->law->name);
+  /* of a path it has no name */
+  diag_error(e->diag, NULL, "the material %s%s(%s) cannot begin with this stress", spec->document ? "" : m->name,
+             spec->document ? "" : " ", m->law->name);
   diag_hint(e->diag, "%s", spec->document ? "`start:` names another one" : "--confining P gives another pressure");
   return PETSC_FALSE;
 }

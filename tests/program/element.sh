@@ -91,7 +91,7 @@ mistake "no component" 's/strain: {zz: 0}, stress: {yy: -150e3}, /strain: {}, st
 mistake "a constant" 's/cohesion: 0/cohesion: -1/' "cohesion"
 mistake "an angle" 's/cohesion: 0/cohesion: 0, dilatancy_angle: 40/' "bad.yaml:2:" "must not be larger than the friction angle"
 mistake "two pressures" 's/pressure: 100e3/pressure: 100e3, stress: {xx: 1}/' "both 'pressure' and 'stress'"
-mistake "a start that yields" 's/pressure: 100e3/stress: {xx: -1e5, yy: -1e6, zz: -1e5}/' "cannot begin with this stress"
+mistake "a start that yields" 's/pressure: 100e3/stress: {xx: -1e5, yy: -1e6, zz: -1e5}/' "the material (mohr-coulomb) cannot begin with this stress"
 mkdir e && echo mine >e/element.csv
 expect "somebody's table" 2 "$talus" element sand.yaml --out e
 says err.txt "talus has not written"
