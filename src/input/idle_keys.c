@@ -1,4 +1,4 @@
-/* Keys that have no effect in the case that they stand in, by one table: whoever has written one had something in
+/* Keys that have no effect in the case that they stand in, by one table, and materials of no body: whoever has written one had something in
  * mind, and is told. */
 #include "input/idle_keys.h"
 #include <math.h>
@@ -282,6 +282,30 @@ static void look_at(const Search *s, const IdleKey *key, PetscInt k, PetscInt i)
   diag_hint(s->diag, "%s", key->instead);
 }
 
+/* In any of the stages: one of a body that goes, or has not come, is of use. */
+static PetscBool has_body(const Case *c, const char *material)
+{
+  for (PetscInt k = 0; k < case_stages(c); ++k)
+    for (PetscInt b = 0; b < case_stage(c, k)->n_bodies; ++b)
+      if (!strcmp(case_stage(c, k)->bodies[b].material, material)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+static void tell_materials(const Search *s, PetscInt k)
+{
+  const Case *stage = case_stage(s->c, k);
+  const YamlNode *root = root_of(s, k), *materials = yaml_find(root, "materials");
+  const PetscInt chosen = yaml_argument(yaml_find(root, "bodies"), PETSC_TRUE);
+  char path[512];
+  for (PetscInt i = 0; i < stage->n_materials; ++i) {
+    const char *name = stage->materials[i].name;
+    if (has_body(s->c, name) || chosen > yaml_argument(materials->child[i], PETSC_TRUE)) continue;
+    snprintf(path, sizeof path, "materials.%s", name);
+    diag_warning(s->diag, path, "%s has no effect here: no body is made of it", path);
+    diag_hint(s->diag, "`bodies: [{material: %s, ..}]`, or leave it out", name);
+  }
+}
+
 PetscErrorCode TellIdleKeys(const YamlDocument *document, const Case *c, Diag *diag)
 {
   const Search s = {.document = document, .c = c, .diag = diag};
@@ -295,6 +319,7 @@ PetscErrorCode TellIdleKeys(const YamlDocument *document, const Case *c, Diag *d
       const PetscInt entries = !list ? 1 : !strcmp(list, "bodies") ? stage->n_bodies : stage->n_boundary;
       for (PetscInt i = 0; i < entries; ++i) look_at(&s, keys + n, k, i);
     }
+    tell_materials(&s, k);
   }
   diag_of_stage(diag, -1, NULL);
   PetscFunctionReturn(0);

@@ -74,6 +74,9 @@ boundary:
   - {on: {x: 5}, fix: [x]}
 loads: {tractions: [{on: {body: soil, x: [0, 1], y: 0}, value: [0, -1000]}]}
 END
+warned "a material of no body" "warning: materials.rock has no effect here: no body is made of it" -- --set formulation=mixed \
+  --set 'materials.rock={law: neo-hookean, density: 1, young: 1e9, poisson: 0}'
+warned "a material that has been of a body" -- --set formulation=mixed --set 'materials.sand={law: mohr-coulomb, density: 1e-3, young: 1e5, poisson: 0.3, friction_angle: 20, cohesion: 100}' --set 'bodies[0].material=sand'
 warned "undrained clay" "case.yaml:8:86: warning: 'clay' yields without any change of its volume: with displacements as the only unknowns quadrilaterals lock" \
   '`formulation: mean-dilatation` keeps that away, and so does `mixed`' --
 warned "triangles" "triangles lock" '`formulation: mixed` keeps that away' -- --set grid.cell=triangle --set 'bodies[0].points_per_cell=3'
