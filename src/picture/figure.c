@@ -1,4 +1,5 @@
 #include "picture/figure.h"
+#include <stdlib.h>
 #include <string.h>
 #include "picture/gnuplot.h"
 #include "picture/label.h"
@@ -186,10 +187,22 @@ static void write_key(FILE *out, const Figure *figure, const PetscReal *min, con
   else fprintf(out, "set key %s %s\n", top ? "top" : "bottom", right ? "right" : "left");
 }
 
+/* Half of a tick's number stands beyond the end of the axis: gnuplot leaves room for three letters. */
+static void write_right_margin(FILE *out, PetscReal max)
+{
+  char number[32];
+  snprintf(number, sizeof number, "%.3g", (double)max);
+  snprintf(number, sizeof number, "%g", strtod(number, NULL));
+  fprintf(out, "set rmargin %g\n", PetscMax(3, 0.5 * (double)strlen(number) + 1));
+}
+
 /* Has the figure a right axis? Where it has, ticks of the left one end at the left. */
 static void write_right_axis(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
 {
-  if (!figure->right_label) return;
+  if (!figure->right_label) {
+    write_right_margin(out, max[AXIS_X]);
+    return;
+  }
   write_label(out, "y2label", figure->right_label, letters(figure, PETSC_TRUE));
   write_range(out, "y2", PETSC_FALSE, min[AXIS_RIGHT], max[AXIS_RIGHT], 0.06);
   fputs("set y2tics\n", out);
@@ -210,7 +223,7 @@ static void write_axes(FILE *out, const Figure *figure, const PetscReal *min, co
   fputs(
     "set border lw 1 lc rgb '#444444'\nset tics textcolor rgb '#000000'\n"
     "set grid xtics ytics lc rgb '#e2e2e2' lw 1 lt 1\nset tics nomirror\n"
-    "set key Left reverse samplen 2 spacing 1.2 width 1 box lc rgb '#cccccc' opaque\n",
+    "set key Left reverse samplen 2 spacing 1.2 width 1 height 0.5 box lc rgb '#cccccc' opaque\n",
     out);
   write_key(out, figure, min, max);
 }

@@ -245,16 +245,37 @@ static void test_formats(void **state)
   TestRemove(folder);
 }
 
-/* How far down a word of an SVG stands, in its own unit. */
-static double Height(const char *svg, const char *word)
+/* How far along (0) or down (1) a word of an SVG stands, in its own unit. */
+static double Place(const char *svg, const char *word, int axis)
 {
   const char *at = strstr(svg, word), *place = NULL;
-  double down = 0;
+  double x[2] = {0};
   assert_non_null(at);
   for (const char *k = svg; (k = strstr(k, "translate(")) && k < at; ++k) place = k;
   assert_non_null(place);
-  assert_int_equal(sscanf(place, "translate(%*f,%lf)", &down), 1);
-  return down;
+  assert_int_equal(sscanf(place, "translate(%lf,%lf)", &x[0], &x[1]), 2);
+  return x[axis];
+}
+
+/* The number at the end of an axis is half beyond it, and within the picture: seven letters of 11 pixels. */
+static void test_last_number(void **state)
+{
+  const PetscReal x[] = {60e6, 120e6}, y[] = {0, 1};
+  const FigureSeries curve = {.n = 2, .x = x, .y = y};
+  const Figure figure = {.n_series = 1, .series = &curve};
+  char folder[64], path[128];
+  PetscBool done;
+  Diag *diag;
+  (void)state;
+  TestFolder(folder);
+  snprintf(path, sizeof path, "%s/a.svg", folder);
+  assert_int_equal(DiagCreate(&diag), 0);
+  assert_int_equal(FigureWrite(&figure, path, diag, &done), 0);
+  assert_int_equal(DiagDestroy(&diag), 0);
+  char *svg = TestRead(folder, "a.svg");
+  assert_true(Place(svg, ">1.2e+08<", 0) + 0.5 * 7 * 11 <= 900);
+  free(svg);
+  TestRemove(folder);
 }
 
 /* A legend covers no curve: where one is free it stands in a corner, and else below the axis. */
@@ -275,7 +296,7 @@ static void test_legend(void **state)
     assert_int_equal(FigureWrite(&figure, path, diag, &done), 0);
     assert_true(done);
     char *svg = TestRead(folder, "legend.svg");
-    assert_int_equal(Height(svg, ">second<") > Height(svg, ">along<"), crossed);
+    assert_int_equal(Place(svg, ">second<", 1) > Place(svg, ">along<", 1), crossed);
     free(svg);
     assert_int_equal(DiagDestroy(&diag), 0);
   }
@@ -409,6 +430,7 @@ static int Tests(void)
                                      cmocka_unit_test(test_keys),
                                      cmocka_unit_test(test_keys_of_tables),
                                      cmocka_unit_test(test_formats),
+                                     cmocka_unit_test(test_last_number),
                                      cmocka_unit_test(test_legend),
                                      cmocka_unit_test(test_mistakes),
                                      cmocka_unit_test(test_compare),
