@@ -421,6 +421,48 @@ static void test_compare_energies(void **state)
   TestRemove(folder);
 }
 
+/* Rows of forces are means since the row before: those of few rows are the impulses of many, and a formula that of its
+ * row, wherever rows end: 4/3 = (1 + 0.5 * 2) / 1.5, 3.2 = (0.5 * 2 + 3 + 4) / 2.5. */
+static void test_compare_means(void **state)
+{
+  char folder[64], a[128], b[128], out[128];
+  const char *const runs[] = {a, b}, *const measures[] = {"f", "both", "tip"};
+  const char *const many =
+                      "time [s],step,f [N],tip [m],both\n0,0,0,0,0\n1,1,1,1,3\n2,2,2,4,8\n3,3,3,9,15\n4,4,4,16,24\n",
+                    *const few = "time [s],step,f [N],tip [m],both\n0,0,0,0,0\n3,3,2,9,13\n4,4,4,16,24\n",
+                    *const others =
+                      "time [s],step,f [N],tip [m],both\n0,0,0,0,0\n1.5,1,1.3333333333333333,2.5,5.1666666666666667\n"
+                      "4,2,3.2,16,22.4\n";
+  const char *const yaml =
+    "kinematics: plane-strain\nmethod: fem\nanalysis: {type: dynamic, end: 4, step: 1}\n"
+    "grid: {box: {min: [0, 0], max: [1, 1]}, size: 1}\n"
+    "bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, material: m}]\n"
+    "materials: {m: {law: neo-hookean, density: 1, young: 1e6, poisson: 0.3}}\n"
+    "boundary: [{name: floor, on: {y: 0}, fix: [x, y]}]\n"
+    "measures: {f: {reaction: y, of: {boundary: floor}}, tip: {displacement: y, of: {tracer: [1, 1]}},"
+    " both: {formula: 2 * f + tip}}\n";
+  CompareOptions options = {.n_runs = 2, .n_measures = 2, .runs = runs, .measures = measures, .out = out};
+  PetscReal worst;
+  (void)state;
+  TestFolder(folder);
+  WriteRun(folder, "a", 4, 1, 5e6), WriteRun(folder, "b", 4, 1, 5e6);
+  snprintf(a, sizeof a, "%s/a", folder), snprintf(b, sizeof b, "%s/b", folder);
+  snprintf(out, sizeof out, "%s/out", folder);
+  for (int r = 0; r < 2; ++r) WriteFile(runs[r], "case.yaml", yaml);
+  WriteFile(a, "history.csv", many), WriteFile(b, "history.csv", few);
+  free(Compare(&options, &worst));
+  assert_true(worst < 1e-15);
+  WriteFile(b, "history.csv", others);
+  free(Compare(&options, &worst));
+  assert_true(worst < 1e-15);
+  /* what is no mean lies on lines between rows: 6 for 4 at 2 s */
+  WriteFile(b, "history.csv", few);
+  options.measures = measures + 2, options.n_measures = 1;
+  free(Compare(&options, &worst));
+  assert_true(fabs(worst - 2. / 16) < 1e-15);
+  TestRemove(folder);
+}
+
 static int Tests(void)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_difference_of_waves),
@@ -434,7 +476,8 @@ static int Tests(void)
                                      cmocka_unit_test(test_legend),
                                      cmocka_unit_test(test_mistakes),
                                      cmocka_unit_test(test_compare),
-                                     cmocka_unit_test(test_compare_energies)};
+                                     cmocka_unit_test(test_compare_energies),
+                                     cmocka_unit_test(test_compare_means)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
 

@@ -192,6 +192,8 @@ for type in dynamic explicit; do
   turn
   expect "$type, every row" 0 on_ranks $ranks "$talus" run bounce.yaml --out all --force --quiet
   few_rows $type '{steps: 4}'
+  # the same solution, whatever rows it has
+  expect "$type, few rows beside all" 0 "$talus" compare all few --measure f --measure both --measure ratio --tolerance 1e-12 --out compared
   few_rows $type end
 done
 bounce dynamic >bounce.yaml

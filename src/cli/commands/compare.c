@@ -23,7 +23,9 @@ const CliUsage cli_compare_usage = {
     "how large beside the largest value of the first run, the keys in which the resolved cases differ (one line for\n"
     "a table such as an amplitude), and a picture of each measure. Runs may have other steps: between its rows a\n"
     "history is taken as linear, and the differences are those at all times of both within the time that they have\n"
-    "in common. Those of energies (in J) are relative to the largest energy of both runs, and those of a balance,\n"
+    "in common. Rows of forces in dynamics are means since the row before: these are compared as means over the rows\n"
+    "of the coarser history, and formulas of them as what those rows would have. Those of energies (in J) are relative "
+    "to the largest energy of both runs, and those of a balance,\n"
     "which is a share, stand as they are: what is round-off of something larger counts as that. A value that one\n"
     "run has there and another has not (nan) is a difference, too; what a search finds once is compared whenever it\n"
     "was found. The tables are written as differences.csv and keys.csv, too.",

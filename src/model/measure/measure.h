@@ -128,6 +128,8 @@ PetscBool window_list_fits(PetscInt64 length);
 /* Is the value of measure k of a case, before any window, the mean over the last step? Of a formula: is any that it
  * takes (formula.c)? Not collective. */
 PetscErrorCode MeasureOverStep(const Case *c, PetscInt k, PetscBool *is);
+/* Has a row of the history the mean of it since the row before (rows.c)? k < 0: of no measure. Not collective. */
+PetscErrorCode MeasureRowIsMean(const Case *c, PetscInt k, PetscBool *is);
 /* Collective. After a step of dt: what the next row of the history is to have of measure k (rows.c). */
 PetscErrorCode RowRemember(Model *m, PetscInt k, PetscReal dt);
 /* Collective. A formula of what a row of the history has of its measures (formula.c). */

@@ -22,16 +22,24 @@ static void add_step(RowMean *row, PetscReal dt, PetscReal value)
   row->mean = before > 0 ? row->mean + dt / row->time * (value - row->mean) : value;
 }
 
+PetscErrorCode MeasureRowIsMean(const Case *c, PetscInt k, PetscBool *is)
+{
+  PetscFunctionBeginUser;
+  *is = PETSC_FALSE;
+  if (k >= 0 && !measure_has_window(c->measures + k)) PetscCall(MeasureOverStep(c, k, is));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode RowRemember(Model *m, PetscInt k, PetscReal dt)
 {
   const MeasureSpec *s = &m->c->measures[k];
-  PetscBool over_step;
+  PetscBool is_mean;
   PetscReal value;
 
   PetscFunctionBeginUser;
-  if (!dt || !skips_steps(m->c) || measure_has_window(s) || is_formula(s)) PetscFunctionReturn(0);
-  PetscCall(MeasureOverStep(m->c, k, &over_step));
-  if (!over_step) PetscFunctionReturn(0);
+  if (!dt || !skips_steps(m->c) || is_formula(s)) PetscFunctionReturn(0);
+  PetscCall(MeasureRowIsMean(m->c, k, &is_mean));
+  if (!is_mean) PetscFunctionReturn(0);
   PetscCall(ModelMeasure(m, s, k, &value));
   add_step(&m->memory[k].row, dt, value);
   PetscFunctionReturn(0);

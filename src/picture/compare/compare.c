@@ -3,18 +3,8 @@
 #include <string.h>
 #include "output/directory/run_dir_files.h"
 #include "picture/compare/found.h"
+#include "picture/compare/rows.h"
 #include "picture/plot.h"
-
-static PetscErrorCode ColumnOf(const CurveRun *run, PetscInt column, PetscReal *time, PetscReal *value, Curve *curve)
-{
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < run->history.n_rows; ++i) {
-    time[i] = curve_run_value(run, i, 0);
-    value[i] = curve_run_value(run, i, column);
-  }
-  *curve = (Curve){.n = run->history.n_rows, .time = time, .value = value};
-  PetscFunctionReturn(0);
-}
 
 static PetscBool is_empty(const Curve *c)
 {
@@ -70,19 +60,37 @@ static PetscErrorCode ChooseScale(const Comparison *c, CompareRow *row)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode Compare(const Comparison *c, PetscInt column, CompareRow *row)
+/* As its rows have it. time and value: as many entries as the history has rows. */
+static Curve curve_of(const RowsOf *of, PetscReal *time, PetscReal *value)
 {
-  const CurveRun *a = &c->runs[0], *b = &c->runs[row->run];
-  const PetscInt n = a->history.n_rows, m = b->history.n_rows;
-  PetscReal *values;
-  Curve first, second;
+  const PetscInt n = of->run->history.n_rows, column = history_column(&of->run->history, of->measure);
+  for (PetscInt i = 0; i < n; ++i) {
+    time[i] = curve_run_value(of->run, i, 0);
+    value[i] = curve_run_value(of->run, i, column);
+  }
+  return (Curve){.n = n, .time = time, .value = value};
+}
+
+/* Of what is a mean over steps, rows as long as each other are compared. */
+static PetscErrorCode Compare(const Comparison *c, CompareRow *row)
+{
+  const RowsOf of[2] = {{&c->runs[0], c->cases[0], row->measure},
+                        {&c->runs[row->run], c->cases[row->run], row->measure}};
+  const PetscInt most = of[0].run->history.n_rows + of[1].run->history.n_rows;
+  PetscReal *times[2], *values[2];
+  PetscBool means = PETSC_FALSE;
+  Curve curves[2];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(2 * (n + m), &values));
-  PetscCall(ColumnOf(a, column, values, values + n, &first));
-  PetscCall(ColumnOf(b, history_column(&b->history, row->measure), values + 2 * n, values + 2 * n + m, &second));
-  compare_curves(&first, &second, row);
-  PetscCall(PetscFree(values));
+  PetscCall(PetscMalloc4(most, &times[0], most, &times[1], most, &values[0], most, &values[1]));
+  for (int k = 0; k < 2 && !means; ++k) PetscCall(RowsAreMeans(&of[k], &means));
+  for (int k = 0; k < 2; ++k) curves[k] = curve_of(&of[k], times[k], values[k]);
+  if (means && of[0].c && of[1].c) {
+    PetscCall(RowsInCommon(of, &curves[0].n, times[0], values));
+    curves[1].time = times[0], curves[1].n = curves[0].n;
+  }
+  compare_curves(&curves[0], &curves[1], row);
+  PetscCall(PetscFree4(times[0], times[1], values[0], values[1]));
   PetscFunctionReturn(0);
 }
 
@@ -140,7 +148,7 @@ static PetscErrorCode FillRows(Comparison *c)
     for (PetscInt r = 1; r < c->options->n_runs; ++r) {
       CompareRow *row = &c->rows[c->n_rows++];
       *row = (CompareRow){.measure = h->names[column], .unit = h->units[column], .run = r};
-      PetscCall(Compare(c, column, row));
+      PetscCall(Compare(c, row));
       PetscCall(ChooseScale(c, row));
     }
   }
@@ -239,6 +247,22 @@ static PetscReal difference_of(const CompareRow *row)
   return row->met && !compare_lack(row) ? row->difference.relative : INFINITY;
 }
 
+static PetscErrorCode OpenCases(Comparison *c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(c->options->n_runs, &c->cases));
+  for (PetscInt r = 0; r < c->options->n_runs; ++r) PetscCall(CurveRunCase(c->options->runs[r], &c->cases[r]));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode CloseCases(Comparison *c)
+{
+  PetscFunctionBeginUser;
+  for (PetscInt r = 0; r < c->options->n_runs; ++r) PetscCall(CaseDestroy(&c->cases[r]));
+  PetscCall(PetscFree(c->cases));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CompareRuns(const CompareOptions *options, FILE *table, Diag *diag, void (*said)(const char *path),
                            PetscReal *worst)
 {
@@ -247,6 +271,7 @@ PetscErrorCode CompareRuns(const CompareOptions *options, FILE *table, Diag *dia
   PetscFunctionBeginUser;
   *worst = 0;
   PetscCall(CurveRunsOpen(options->n_runs, options->runs, diag, &c.runs));
+  PetscCall(OpenCases(&c));
   PetscCall(KeysDiffer(options->n_runs, options->runs, &c.keys));
   if (!diag_errors(diag)) PetscCall(CheckMeasures(&c, diag));
   if (!diag_errors(diag)) PetscCall(FillRows(&c));
@@ -255,6 +280,7 @@ PetscErrorCode CompareRuns(const CompareOptions *options, FILE *table, Diag *dia
   for (PetscInt i = 0; i < c.n_rows; ++i) *worst = PetscMax(*worst, difference_of(&c.rows[i]));
   PetscCall(PetscFree(c.rows));
   PetscCall(DifferingKeysFree(&c.keys));
+  PetscCall(CloseCases(&c));
   PetscCall(CurveRunsClose(options->n_runs, &c.runs));
   PetscFunctionReturn(0);
 }

@@ -23,6 +23,7 @@ typedef struct {
 typedef struct {
   const CompareOptions *options;
   CurveRun *runs;
+  Case **cases; /* of the runs; NULL: one cannot be read */
   DifferingKeys keys;
   PetscInt n_rows;
   CompareRow *rows;

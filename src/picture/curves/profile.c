@@ -1,10 +1,10 @@
 /* The tractions along a wall in one state: a picture over a coordinate, and a table. */
 #include <string.h>
 #include "base/text.h"
-#include "input/case_file.h"
 #include "output/directory/run_dir_files.h"
 #include "output/vtk/vtk_read.h"
 #include "output/vtk/vtk_series.h"
+#include "picture/curves/runs.h"
 #include "picture/figure.h"
 #include "picture/plot.h"
 #include "wall/wall.h"
@@ -189,29 +189,17 @@ static PetscErrorCode PointsSpan(const char *run, PetscReal time, PetscInt along
   PetscFunctionReturn(0);
 }
 
-/* The case of the run; NULL where it cannot be read, which is not said. */
-static PetscErrorCode ReadCase(const PlotOptions *options, Diag *unheard, Case **c)
-{
-  char path[FILE_PATH];
-
-  PetscFunctionBeginUser;
-  *c = NULL;
-  PetscCall(PetscSNPrintf(path, sizeof path, "%s/case.yaml", options->run));
-  PetscCall(CaseRead(PETSC_COMM_SELF, path, 0, NULL, unheard, c));
-  PetscFunctionReturn(0);
-}
-
 /* Where a wall stands beside a body and feels nothing, a curve has nothing: the axis shows it. */
 static PetscErrorCode FindSpan(const PlotOptions *options, PetscInt wall, PetscReal time, Profile *p)
 {
   PetscReal points[2] = {PETSC_MAX_REAL, -PETSC_MAX_REAL}, min[3], max[3];
   Walls *walls = NULL;
-  Case *c = NULL;
+  Case *c;
   Diag *own;
 
   PetscFunctionBeginUser;
   PetscCall(DiagCreate(&own));
-  PetscCall(ReadCase(options, own, &c));
+  PetscCall(CurveRunCase(options->run, &c));
   if (c) PetscCall(WallsCreate(c, own, &walls));
   if (walls) {
     PetscCall(PointsSpan(options->run, time, p->along, points));
@@ -229,14 +217,11 @@ static PetscErrorCode FindSpan(const PlotOptions *options, PetscInt wall, PetscR
 static PetscErrorCode FindWall(const PlotOptions *options, Diag *diag, PetscInt *index, PetscBool *space)
 {
   const char **names, *nearest;
-  Case *c = NULL;
-  Diag *own;
+  Case *c;
 
   PetscFunctionBeginUser;
   *index = -1;
-  PetscCall(DiagCreate(&own));
-  PetscCall(ReadCase(options, own, &c));
-  PetscCall(DiagDestroy(&own));
+  PetscCall(CurveRunCase(options->run, &c));
   PetscCall(PetscCalloc1(c ? c->n_walls + 1 : 1, &names));
   for (PetscInt k = 0; c && k < c->n_walls; ++k) {
     names[k] = c->walls[k].name;

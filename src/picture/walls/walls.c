@@ -1,24 +1,20 @@
 #include "picture/walls/walls.h"
 #include <math.h>
-#include "input/case_file.h"
-#include "output/directory/run_dir_files.h"
+#include "picture/curves/runs.h"
 
 enum { FILL = 214, LINE = 50 };
 #define LINE_WIDTH 2.0 /* pixels */
 
 PetscErrorCode PlotWallsOpen(const char *run, Diag *diag, PlotScene *scene)
 {
-  char path[FILE_PATH];
   Diag *own; /* a run may be drawn whatever became of its case */
 
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(path, sizeof path, "%s/case.yaml", run));
-  if (!file_exists(run, "case.yaml")) PetscFunctionReturn(0);
+  PetscCall(CurveRunCase(run, &scene->walled));
   PetscCall(DiagCreate(&own));
-  PetscCall(CaseRead(PETSC_COMM_SELF, path, 0, NULL, own, &scene->walled));
   if (scene->walled && scene->walled->n_walls) PetscCall(WallsCreate(scene->walled, own, &scene->walls));
   if (scene->walls && diag_errors(own)) {
-    diag_warning(diag, NULL, "the walls are not drawn: '%s' names files that cannot be read any more", path);
+    diag_warning(diag, NULL, "the walls are not drawn: '%s/case.yaml' names files that cannot be read any more", run);
     PetscCall(WallsDestroy(&scene->walls));
   }
   PetscCall(DiagDestroy(&own));

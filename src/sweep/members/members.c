@@ -110,9 +110,7 @@ static PetscErrorCode LookForMeans(Member *m, const Case *c)
   PetscCall(PetscCalloc1(m->n_taken * m->n_stages, &m->means));
   for (PetscInt i = 0; i < m->n_taken * m->n_stages; ++i) {
     const Case *stage = case_stage(c, i % m->n_stages);
-    const PetscInt k = case_measure_of(stage, m->taken[i / m->n_stages].measure);
-    if (k < 0 || measure_has_window(stage->measures + k)) continue;
-    PetscCall(MeasureOverStep(stage, k, &m->means[i]));
+    PetscCall(MeasureRowIsMean(stage, case_measure_of(stage, m->taken[i / m->n_stages].measure), &m->means[i]));
   }
   PetscFunctionReturn(0);
 }

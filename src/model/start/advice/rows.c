@@ -2,14 +2,6 @@
 #include "model/measure/measure.h"
 #include "model/model_private.h"
 
-static PetscErrorCode IsMean(const Case *c, PetscInt k, PetscBool *is)
-{
-  PetscFunctionBeginUser;
-  *is = PETSC_FALSE;
-  if (!measure_has_window(c->measures + k)) PetscCall(MeasureOverStep(c, k, is));
-  PetscFunctionReturn(0);
-}
-
 PetscErrorCode AdviseRows(const Model *m, Diag *diag)
 {
   const Case *c = m->c;
@@ -17,7 +9,7 @@ PetscErrorCode AdviseRows(const Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   for (PetscInt k = 0; c->output.history == 0 && k < c->n_measures; ++k) {
-    PetscCall(IsMean(c, k, &is));
+    PetscCall(MeasureRowIsMean(c, k, &is));
     if (!is) continue;
     diag_warning(diag, "output.history", "its row at the end has of '%s' the mean over all steps", c->measures[k].name);
     diag_hint(diag, "what it is in the last step stands in the log: ask for more rows, or for a `mean` in a window");
