@@ -94,6 +94,13 @@ takes() { awk -v mb="$1" '/memory: about/ { m = $4 } END { exit !(m > mb / 1.3 &
 in_space="--set kinematics=3d --set loads.gravity=[0,-9.81,0]"
 expect "memory of gmm" 0 "$talus" check cost.yaml $in_space --set method=gmm --set 'grid={box: {min: [0, 0, 0], max: [1, 1, 1]}, counts: [10, 10, 10]}' --set 'bodies[0].shape={box: {min: [0, 0, 0], max: [1, 1, 1]}}'
 takes 144
+# Nodes that see many fill a factor more than cells do, and no more levels of multigrid
+for row in "gmm 10 direct 290" "gmm 15 iterative 480" "mpm 15 direct 391"; do
+  set -- $row
+  expect "memory of statics, $row" 0 "$talus" check cost.yaml $in_space --set 'analysis={type: static, steps: 1}' --set method=$1 --set "grid={box: {min: [0, 0, 0], max: [1, 1, 1]}, counts: [$2, $2, $2]}" \
+    --set linear=$3 --set 'bodies[0].shape={box: {min: [0, 0, 0], max: [1, 1, 1]}}' --set 'boundary=[{on: {z: 0}, fix: [x, y, z]}]'
+  takes $4
+done
 for type in "dynamic 459" "explicit 156"; do
   expect "memory of mpm, $type" 0 "$talus" check cost.yaml $in_space --set 'grid={box: {min: [-0.1, -0.1, 0], max: [1.1, 1.1, 1.1]}, size: 0.05}' --set 'bodies[0].shape={box: {min: [0, 0, 0], max: [1, 1, 1]}}' \
     --set 'analysis.step=0.0001' --set "analysis.type=${type% *}"

@@ -119,6 +119,8 @@ static LinearProblem linear_problem(const Model *m, PetscReal dt)
     .choice = m->c->linear,
     .dim = m->dim,
     .unknowns = m->system->n_active_global * m->system->block,
+    .pairs = m->system->n_pairs_global,
+    .block = m->system->block,
     .symmetric = m->symmetric,
     .failing = case_seeks(&m->c->analysis),
     .levels = coarse_box_fits(m->grid),

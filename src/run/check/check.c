@@ -139,8 +139,11 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
   PetscFunctionReturn(0);
 }
 
-/* What the solver needs beside its matrix: a factor, or the levels of multigrid. */
-#define MULTIGRID 0.7 /* of the matrix, measured */
+/* What multigrid needs beside its matrix, measured: levels of a box, of the matrix; algebraic ones, bytes for each
+ * number of a node's own block, however many nodes it sees, since those who see many are gathered in one of the next
+ * level. */
+#define BOX_LEVELS 0.7
+#define ALGEBRAIC_LEVELS 750
 /* Program and libraries, a rank. */
 #define PROGRAM 45e6
 /* A node's fields. */
@@ -182,11 +185,13 @@ static PetscErrorCode SupportMemory(const Model *m, PetscInt points, PetscReal *
 
 /* Bytes of a tangent and what solves with it. In dynamics blocks stand in single precision twice, as they are gathered
  * and as rows have them, and for a while as they are; else PETSc has its own beside ours, or a coarse level does. */
-static PetscReal tangent_memory(const Model *m, PetscInt unknowns, PetscInt pairs)
+static PetscReal tangent_memory(const Model *m, PetscInt unknowns)
 {
   const LinearProblem problem = {.choice = m->c->linear,
                                  .dim = m->dim,
                                  .unknowns = unknowns,
+                                 .pairs = m->system->n_pairs_global,
+                                 .block = m->system->block,
                                  .symmetric = m->symmetric,
                                  .failing = case_seeks(&m->c->analysis),
                                  .levels = coarse_box_fits(m->grid),
@@ -194,14 +199,14 @@ static PetscReal tangent_memory(const Model *m, PetscInt unknowns, PetscInt pair
                                  .memory = m->machine_memory};
   const PetscReal block = (PetscReal)m->system->block,
                   value = m->scheme->inertia && !problem.mixed ? 8 + 4 + 4 : 8 + 8 + 4,
-                  matrix = (PetscReal)pairs * (block * block * value + 12);
+                  matrix = problem.pairs * (block * block * value + 12);
   if (m->scheme->inertia) return matrix;
-  return matrix + (linear_factorises(&problem) ? linear_factor_bytes(&problem) : MULTIGRID * matrix);
+  if (linear_factorises(&problem)) return matrix + linear_factor_bytes(&problem);
+  return matrix + (problem.levels ? BOX_LEVELS * matrix : ALGEBRAIC_LEVELS * block * (PetscReal)unknowns);
 }
 
 /* Bytes, roughly: points, what they see, nodes, and where a step is solved for the tangent and its solver. */
-static PetscErrorCode EstimateMemory(const Model *m, PetscInt points, PetscInt unknowns, PetscInt pairs,
-                                     PetscReal *needed)
+static PetscErrorCode EstimateMemory(const Model *m, PetscInt points, PetscInt unknowns, PetscReal *needed)
 {
   PetscReal per_point = 24, seen = 0, slots = 0;
   PetscMPIInt ranks;
@@ -211,7 +216,7 @@ static PetscErrorCode EstimateMemory(const Model *m, PetscInt points, PetscInt u
   PetscCall(SupportMemory(m, points, &seen, &slots));
   for (PetscInt f = 0; f < POINT_N_REAL; ++f) per_point += 8 * (PetscReal)m->points->components[f];
   *needed = PROGRAM * ranks + (PetscReal)points * per_point + seen + NODE * (PetscReal)m->grid->n_nodes_global;
-  if (m->c->analysis.type != ANALYSIS_EXPLICIT) *needed += slots + tangent_memory(m, unknowns, pairs);
+  if (m->c->analysis.type != ANALYSIS_EXPLICIT) *needed += slots + tangent_memory(m, unknowns);
   PetscFunctionReturn(0);
 }
 
@@ -298,15 +303,13 @@ static void report_waves(const Model *m, FILE *out)
 
 static PetscErrorCode ReportSizes(Model *m, Diag *diag, FILE *out)
 {
-  PetscInt points, pairs, all_pairs;
+  PetscInt points;
   PetscReal needed = 0;
   char from[80], to[80], told[256];
 
   PetscFunctionBeginUser;
   PetscCall(ModelActivate(m));
   PetscCall(ModelCountPoints(m, &points));
-  pairs = m->system->row_start[m->system->n_rows];
-  PetscCall(MPIU_Allreduce(&pairs, &all_pairs, 1, MPIU_INT, MPI_SUM, m->comm));
   const PetscInt unknowns = m->system->n_active_global * m->system->block;
   if (m->grid->cloud) PetscCall(ReportClouds(m, out));
   say(m, out, "# the model\n#   grid: %d cells (%s%s%s), %d nodes, from %s to %s m\n", (int)m->grid->n_cells_global,
@@ -319,7 +322,7 @@ static PetscErrorCode ReportSizes(Model *m, Diag *diag, FILE *out)
   if (method_tell_scheme(m->method, m->c, sizeof told, told)) say(m, out, "#   scheme: %s\n", told);
   report_followers(m, out);
   say(m, out, "#   points: %d; unknowns at the start: %d\n", (int)points, (int)unknowns);
-  PetscCall(EstimateMemory(m, points, unknowns, all_pairs, &needed));
+  PetscCall(EstimateMemory(m, points, unknowns, &needed));
   report_memory(m, needed, diag, out);
   if (m->scheme->inertia) report_waves(m, out);
   PetscCall(ReportSubsteps(m, out));

@@ -177,12 +177,22 @@ static PetscInt factorise_below(const LinearProblem *p)
 }
 
 /* Fill-in of nested dissection grows as n log n in the plane and as n^(4/3) in space. Numbers of MUMPS and PETSc's
- * copies together; pressures, and both triangles of unsymmetric tangents, take more. */
-PetscReal linear_factor_bytes(const LinearProblem *p)
+ * copies together, of nodes that see those of the cells around them; pressures, and both triangles of unsymmetric
+ * tangents, take more. */
+static PetscReal factor_bytes_of_cells(const LinearProblem *p, PetscReal n)
 {
-  const PetscReal n = (PetscReal)PetscMax(p->unknowns, 2);
   if (p->dim == 3) return (p->mixed || !p->symmetric ? 530 : 280) * PetscPowReal(n, 4.0 / 3.0);
   return (p->mixed ? 175 : p->symmetric ? 90 : 132) * n * PetscLog2Real(n);
+}
+
+/* Nodes that see farther are parted by separators as wide as they see, r cells: there are (2 r + 1)^dim nodes in a row,
+ * and numbers between separators grow as r^2. The copy for MUMPS, values with rows and columns, is large then. */
+PetscReal linear_factor_bytes(const LinearProblem *p)
+{
+  const PetscReal n = (PetscReal)PetscMax(p->unknowns, 2), block = (PetscReal)PetscMax(p->block, 1),
+                  of_cells = (p->dim == 3 ? 27 : 9) * n / block, wider = PetscMax(p->pairs / of_cells, 1),
+                  copied = (wider - 1) * of_cells * block * block * (p->symmetric ? 8 : 16);
+  return PetscPowReal(wider, 2.0 / (PetscReal)p->dim) * factor_bytes_of_cells(p, n) + copied;
 }
 
 PetscBool linear_factor_fits(const LinearProblem *p)

@@ -11,6 +11,8 @@
 typedef struct {
   LinearChoice choice;
   PetscInt dim, unknowns;
+  PetscReal pairs; /* of nodes that see each other, each with itself too */
+  PetscInt block;  /* unknowns of a node */
   PetscBool symmetric, dynamic;
   PetscBool failing;      /* is it asked for the load, or the strength, at which material fails? */
   PetscBool levels;       /* has the grid coarse nodes (solve/levels)? */

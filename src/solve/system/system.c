@@ -150,6 +150,8 @@ static PetscErrorCode SystemPattern(System *s, const NodeGroups *groups)
       if (s->column[k] == rows[r]) s->diagonal[r] = k;
   }
   s->row_start[s->n_rows] = size;
+  s->n_pairs_global = (PetscReal)size;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &s->n_pairs_global, 1, MPIU_REAL, MPI_SUM, s->comm));
   PetscCall(PetscRealloc((size_t)size * sizeof(PetscInt), &s->column));
   PetscCall(PetscCalloc1(size * s->block * s->block + SYSTEM_PADDING, &s->values));
   PetscCall(PetscFree(start));

@@ -54,7 +54,8 @@ typedef struct System {
   PetscInt *row; /* n_nodes: row of the local pattern, -1 if none */
   /* pattern of node pairs: n_rows + 1, and local nodes, ascending in a row */
   PetscInt *row_start, *column;
-  PetscInt *diagonal; /* n_rows: place of the diagonal pair */
+  PetscReal n_pairs_global; /* over all ranks */
+  PetscInt *diagonal;       /* n_rows: place of the diagonal pair */
   /* block x block numbers of pair k at k * block * block */
   PetscReal *values;
   /* the same in single precision, which is all that blocks need */
