@@ -103,6 +103,10 @@ walls:
   - {name: wall, shape: {box: {min: [-0.6, -1], max: [0, 4]}}, friction_angle: 15}
 loads: {gravity: [0, -9.81]}
 END
+expect "the volume of a body with stress" 0 "$talus" check retained.yaml
+says out.txt " m3 without stress, mass 30600 kg" "18 m3 for 18 m3 of its shape"
+expect "the volume of a body without" 0 "$talus" check retained.yaml --set bodies[0].k0=null
+says out.txt "volume 18 m3, mass 30600 kg"
 for ranks in 1 2 3; do
   expect "a gap below, $ranks ranks" 0 on_ranks $ranks "$talus" check retained.yaml --set 'walls[0].shape.half-space.point=[0, -0.03]'
   says err.txt "retained.yaml:5:10: warning: nothing but friction bears the weight of 'soil'" "wall 'floor' is below, 0.03 m away from it"

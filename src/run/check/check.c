@@ -89,6 +89,12 @@ static PetscReal body_density(const Model *m, PetscInt body)
   return 1;
 }
 
+/* Has initial stress changed the volume that its points would have without it? */
+static PetscBool is_strained(const Model *m, PetscInt body, const BodyCount *count)
+{
+  return (PetscBool)(PetscAbsReal(count->volume * body_density(m, body) / count->mass - 1) > 1e-9);
+}
+
 /* What stands for a body's shape, and what that measures. */
 static PetscErrorCode ReportFill(const Model *m, PetscInt body, PetscReal mass, FILE *out)
 {
@@ -119,8 +125,9 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
   for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
     if (m->c->bodies[b].absent) continue;
     const char *name = m->c->bodies[b].name;
-    say(m, out, "#   body %s: %d points in %d cells, volume %g m3, mass %g kg\n", name, (int)count[b].points,
-        (int)count[b].cells, (double)count[b].volume, (double)count[b].mass);
+    say(m, out, "#   body %s: %d points in %d cells, volume %g m3%s, mass %g kg\n", name, (int)count[b].points,
+        (int)count[b].cells, (double)count[b].volume, is_strained(m, b, &count[b]) ? " without stress" : "",
+        (double)count[b].mass);
     PetscCall(ReportFill(m, b, count[b].mass, out));
     PetscCall(CountGaps(m, b, &gaps));
     PetscCall(PetscSNPrintf(path, sizeof path, "bodies[%d]", (int)b));
