@@ -257,6 +257,8 @@ static PetscErrorCode Draw(const PlotOptions *options, int *exit_code)
   if (picture[0]) {
     say(picture);
     PetscCall(DrawCourse(options, diag));
+  }
+  if (!options->profile && !options->animate && !diag_errors(diag)) {
     PetscCall(PlotHistories(options, diag, say));
     PetscCall(PlotFactor(options, diag, say));
     PetscCall(PlotLimit(options, diag, say));

@@ -107,7 +107,7 @@ PetscErrorCode PlotAnimate(const PlotOptions *options, Diag *diag, void (*said)(
 {
   Film film = {.options = *options};
   VtkSeries series;
-  char reason[256];
+  PetscInt empty;
   const char *ending = options->out ? strrchr(options->out, '.') : NULL;
 
   PetscFunctionBeginUser;
@@ -117,13 +117,13 @@ PetscErrorCode PlotAnimate(const PlotOptions *options, Diag *diag, void (*said)(
     diag_hint(diag, "apt install ffmpeg, or a GIF: --format gif");
     PetscFunctionReturn(0);
   }
-  if (VtkSeriesRead(options->run, "points", &series, reason)) {
-    diag_error(diag, NULL, "cannot read '%s/points.hdf.series': %s", options->run, reason);
-    PetscFunctionReturn(0);
-  }
+  PetscCall(PlotSeriesRead(options, diag, &series, &empty));
+  if (diag_errors(diag)) PetscFunctionReturn(0);
   if (series.n < 2) {
     diag_error(diag, NULL, "the run '%s' has %s: nothing moves", options->run,
-               series.n ? "a single state" : "no states");
+               series.n ? "a single state"
+               : empty  ? "no states with points"
+                        : "no states");
     diag_hint(diag, "output: {every: ...} says when states are written");
   } else if (options->out || plot_folder(options->run, diag))
     PetscCall(DrawAll(&film, series.n, series.states, diag, said));

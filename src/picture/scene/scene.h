@@ -125,6 +125,9 @@ typedef struct {
   char words[192]; /* "velocity magnitude" */
 } PlotSubject;
 
+/* series.c: the states of a run that have points, and how many have none, which is told. A mistake goes to diag, and
+ * there are no states then. */
+PetscErrorCode PlotSeriesRead(const PlotOptions *options, Diag *diag, VtkSeries *series, PetscInt *empty);
 /* state.c: n states as a scene, everything but its place on the page; mistakes go to diag. To be freed in any case. */
 PetscErrorCode PlotSceneFill(const PlotOptions *options, PetscInt n, const VtkState *states, PlotSubject *subject,
                              Diag *diag, PlotScene *scene);

@@ -50,15 +50,14 @@ static VtkState state_nearest(const VtkSeries *series, PetscReal time, Diag *dia
 static PetscErrorCode FindStates(const PlotOptions *options, Diag *diag, PetscInt *n, VtkState *states)
 {
   VtkSeries series;
-  char reason[256];
+  PetscInt empty;
 
   PetscFunctionBeginUser;
   *n = 0;
-  if (VtkSeriesRead(options->run, "points", &series, reason)) {
-    diag_error(diag, NULL, "cannot read '%s/points.hdf.series': %s", options->run, reason);
-    PetscFunctionReturn(0);
-  }
-  if (series.n == 0) diag_error(diag, NULL, "there is no state of a run in '%s' (no points.hdf.series)", options->run);
+  PetscCall(PlotSeriesRead(options, diag, &series, &empty));
+  if (diag_errors(diag)) PetscFunctionReturn(0);
+  if (series.n + empty == 0)
+    diag_error(diag, NULL, "there is no state of a run in '%s' (no points.hdf.series)", options->run);
   else if (options->all_times && series.n > PLOT_MAX_STATES) {
     diag_error(diag, NULL, "the run has %d states, a picture holds %d at most", (int)series.n, PLOT_MAX_STATES);
     diag_hint(diag, "name some: --time 0,%g,%g", (double)series.states[series.n / 2].time,
@@ -69,7 +68,7 @@ static PetscErrorCode FindStates(const PlotOptions *options, Diag *diag, PetscIn
     const PetscInt most = series.n < 3 ? 0 : PetscMin(options->even, series.n);
     for (; *n < most; ++*n) states[*n] = series.states[*n * (series.n - 1) / (most - 1)];
   } else
-    for (; *n < options->n_times; ++*n) states[*n] = state_nearest(&series, options->times[*n], diag);
+    for (; series.n > 0 && *n < options->n_times; ++*n) states[*n] = state_nearest(&series, options->times[*n], diag);
   if (series.n > 0 && !options->all_times && !options->even && *n == 0) states[(*n)++] = series.states[series.n - 1];
   PetscCall(VtkSeriesFree(&series));
   PetscFunctionReturn(0);
