@@ -2,6 +2,7 @@
 #include <string.h>
 #include "base/hash.h"
 #include "input/case_file.h"
+#include "input/stages.h"
 #include "output/checkpoint/checkpoint.h"
 #include "model/state/state.h"
 #include "run/run_private.h"
@@ -23,14 +24,11 @@ static void take_out(char *text, const char *word)
   for (char *at = text; n && (at = strstr(at, word));) memmove(at, at + n, strlen(at + n) + 1);
 }
 
-/* What a resumed run may change without becoming another one does not count; nor where its files are, for files.txt has
- * their contents. */
-static PetscErrorCode Fingerprint(const Case *c, PetscInt64 *value)
+/* What a resumed run may change without becoming another one does not count. last: ends in others than the last stage
+ * are the begins of those behind them. */
+static Case without_what_may_change(const Case *c, PetscBool last)
 {
   Case copy = *c;
-  char *yaml;
-
-  PetscFunctionBeginUser;
   copy.title = NULL;
   copy.newton = (NewtonSpec){0};
   copy.linear = LINEAR_AUTO;
@@ -40,10 +38,41 @@ static PetscErrorCode Fingerprint(const Case *c, PetscInt64 *value)
   copy.grid.outside = OUTSIDE_STOP;
   copy.analysis.n_until = 0;
   copy.analysis.smallest = copy.analysis.largest = copy.analysis.step;
-  if (!case_is_static(&c->analysis)) copy.analysis.end = 1;
+  if (last && !case_is_static(&c->analysis)) copy.analysis.end = 1;
+  return copy;
+}
+
+/* The stages with what they change of that. */
+static PetscErrorCode StagesWithout(const Case *c, const Case *copy, StageSpec *stages)
+{
+  Case before = *copy;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < c->n_stages; ++k) {
+    const Case stage = without_what_may_change(c->stage_case[k], (PetscBool)(k + 1 == c->n_stages));
+    stages[k] = c->stages[k];
+    PetscCall(StageText(&before, &stage, &stages[k].text));
+    before = stage;
+  }
+  PetscFunctionReturn(0);
+}
+
+/* Where files are does not count either, for files.txt has their contents. */
+PetscErrorCode RunFingerprint(const Case *c, PetscInt64 *value)
+{
+  Case copy = without_what_may_change(c, PETSC_TRUE);
+  StageSpec *stages;
+  char *yaml;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(c->n_stages, &stages));
+  PetscCall(StagesWithout(c, &copy, stages));
+  copy.stages = stages;
   PetscCall(CaseToYaml(&copy, &yaml));
   for (PetscInt k = 0; k < c->n_files; ++k) take_out(yaml, c->files[k].path);
   *value = (PetscInt64)hash_text(yaml);
+  for (PetscInt k = 0; k < c->n_stages; ++k) PetscCall(PetscFree(stages[k].text));
+  PetscCall(PetscFree(stages));
   PetscCall(PetscFree(yaml));
   PetscFunctionReturn(0);
 }
@@ -98,7 +127,7 @@ static PetscErrorCode MemoryToTables(const Run *r, Tables *tables)
   PetscFunctionBeginUser;
   PetscCall(TablesAdd(tables, "run", PETSC_TRUE, 1, &table));
   PetscCall(TableAdd(table, "case", NULL, COLUMN_INT64, 1, NULL, &column));
-  PetscCall(Fingerprint(r->whole, column->data));
+  *(PetscInt64 *)column->data = r->fingerprint;
   PetscCall(TableAdd(table, "history", NULL, COLUMN_INT64, 3, NULL, &column));
   PetscCall(HistoryGetMark(r->dir, &mark));
   PetscCall(PetscArraycpy((PetscInt64 *)column->data, ((PetscInt64[]){mark.lines, mark.bytes, mark.crc}), 3));
@@ -123,7 +152,6 @@ static void mark_from_table(const Table *table, HistoryMark *mark)
 static PetscErrorCode MemoryFromTables(Run *r, const Tables *tables, RunMemory *memory, char reason[256])
 {
   const Table *table = tables_find(tables, "run");
-  PetscInt64 fingerprint;
 
   PetscFunctionBeginUser;
   reason[0] = 0;
@@ -131,8 +159,7 @@ static PetscErrorCode MemoryFromTables(Run *r, const Tables *tables, RunMemory *
   if (reason[0]) PetscFunctionReturn(0);
   const PetscInt64 *kept = table_data(table, "case", COLUMN_INT64, 1, reason);
   const PetscReal *seconds = table_data(table, "seconds", COLUMN_REAL, 1, reason);
-  PetscCall(Fingerprint(r->whole, &fingerprint));
-  if (kept && *kept != fingerprint) snprintf(reason, 256, "it is of another case than the case.yaml beside it");
+  if (kept && *kept != r->fingerprint) snprintf(reason, 256, "it is of another case than the case.yaml beside it");
   memory->seconds = seconds ? *seconds : 0;
   mark_from_table(table, &memory->history);
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(counts); ++i) {

@@ -187,7 +187,7 @@ PetscErrorCode RunResume(Run *r, const RunOptions *options, Diag *diag, PetscBoo
   else PetscCall(OutputCreate(r->model, run_dir_path(r->dir), &r->output));
   if (same && extension_allowed(r, &extension, diag)) PetscCall(CheckpointLoad(r, diag, &step, &fits));
   if (fits && step < 0) PetscCall(StartAgain(r, options, &extension, diag, complete));
-  if (fits && step >= 0) extension_from_checkpoint(r, &extension, diag);
+  if (fits && step >= 0) extension_from_checkpoint(r, diag);
   PetscCall(DiagReduce(r->comm, diag, &errors));
   if (fits && step >= 0 && !errors) PetscCall(Rewind(r, step, diag));
   PetscCall(DiagReduce(r->comm, diag, &errors));

@@ -353,6 +353,7 @@ static PetscErrorCode ModelsCreate(Run *r, const RunOptions *options, Diag *diag
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(case_stages(r->whole), &r->starts));
+  PetscCall(RunFingerprint(r->whole, &r->fingerprint));
   run_begin_stage(r, 0);
   PetscCall(ModelCreate(r->comm, r->c, diag, &r->model));
   if (r->model && options->body_force)

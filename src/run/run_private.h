@@ -27,8 +27,9 @@ typedef struct {
 
 typedef struct {
   MPI_Comm comm;
-  const Case *whole; /* with all of its stages */
-  const Case *c;     /* of the present stage */
+  const Case *whole;      /* with all of its stages */
+  PetscInt64 fingerprint; /* of the whole as it was read: stages that have begun know when */
+  const Case *c;          /* of the present stage */
   PetscInt stage;
   PetscReal *starts; /* of all stages so far, s */
   Model *model;
@@ -103,10 +104,11 @@ PetscErrorCode FunctionsWrite(Run *r, const RunOptions *options);
 /* Collective. Has the run that is resumed the functions that it was begun with? An error if not. */
 PetscErrorCode FunctionsCheck(const Run *r, const RunOptions *options, Diag *diag, PetscBool *same);
 
-/* Ends of a run that is resumed, s: that of the case kept in its directory, and the one that is
- * asked for. */
+/* Ends of a run that is resumed, of its last stage where it has any, s: that of the case kept in its directory, and the
+ * one that is asked for. */
 typedef struct {
   PetscReal before, now;
+  PetscInt stage; /* one before the last that would end at another time, -1: none */
 } Extension;
 
 /* Collective. */
@@ -116,8 +118,10 @@ PetscBool extension_allowed(const Run *r, const Extension *extension, Diag *diag
 /* What to say of a run that is complete: an error if it was to go on to a later end and cannot. */
 void extension_without_checkpoint(const Run *r, const Extension *extension, Diag *diag);
 /* After the model is back: an error if it is past the end asked for, a warning if it is there. */
-void extension_from_checkpoint(const Run *r, const Extension *extension, Diag *diag);
+void extension_from_checkpoint(const Run *r, Diag *diag);
 
+/* checkpoint.c. What a case must have in common with the one of a checkpoint. */
+PetscErrorCode RunFingerprint(const Case *c, PetscInt64 *value);
 /* Is it time for a checkpoint by the clock? On rank 0, who alone knows the time. */
 PetscBool checkpoint_by_clock(const Run *r);
 PetscBool checkpoint_by_step(const Run *r);

@@ -535,4 +535,36 @@ awk -F, 'END { exit !(($4 - 1500) ^ 2 < 1e-6 && ($5 - 1500) ^ 2 < 1e-6) }' windo
 expect "a window when all is over" 2 "$talus" check window.yaml --set 'measures.later.mean.window=[2, 3]'
 says err.txt "the window of 'later' begins when the run is over, 2 s after the stage began (stage 'first')"
 
+# A complete run goes on to a later end of its last stage, as if it had been asked for at once; what says how stages are solved changes, too.
+cat >longer.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [2, 2]}, size: 0.5}
+bodies: [{name: b, shape: {box: {min: [0.5, 0], max: [1.5, 1]}}, material: r}]
+materials: {r: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{name: base, on: {y: 0}, fix: [x, y]}]
+loads: {gravity: [0, -9.81]}
+measures: {tip: {displacement: x, of: {tracer: [1, 1]}}}
+output: {fields: [displacement], history: {steps: 1}}
+stages:
+  - {name: weight}
+  - {name: pull, analysis: {type: dynamic, end: 0.01, step: 0.005}, loads: {gravity: [2, -9.81]}}
+  - {name: swing, analysis: {type: dynamic, end: 0.01, step: 0.005}, loads: {gravity: [0, -9.81]}}
+END
+turn
+expect "three stages" 0 on_ranks $ranks "$talus" run longer.yaml --out short --quiet
+expect "three stages, the last one longer" 0 on_ranks $ranks "$talus" run longer.yaml --out long --quiet --set stages[2].analysis.end=0.02
+expect "complete with its stages" 0 "$talus" run --resume short --quiet
+says err.txt "is complete at t = 1.02 s: there is nothing left to do" "--set stages[2].analysis.end=..."
+expect "a stage goes on" 0 on_ranks $ranks "$talus" run --resume short --quiet --set stages[2].analysis.end=0.02
+if [ $ranks = 1 ]; then same_bits "$name" long short; else same_answer "$name" long short; fi
+expect "an earlier stage's end" 2 "$talus" run --resume short --quiet --set stages[1].analysis.end=0.02
+says err.txt "stage 'pull' cannot get another end: those behind it begin there" "--set stages[2].analysis.end=..."
+expect "an end that is over" 2 "$talus" run --resume short --quiet --set stages[2].analysis.end=0.01
+says err.txt "has come to t = 1.03 s already, later than the end = 1.02 s"
+expect "another tolerance" 0 on_ranks $ranks "$talus" run --resume short --quiet --set stages[2].analysis.end=0.03 --set stages[2].newton.residual=1e-10
+expect "other loads" 2 "$talus" run --resume short --quiet --set stages[2].loads.gravity=[0,0]
+says err.txt "a resumed run cannot change stages[2].loads.gravity" "newton, linear, parallel, petsc" "analysis.until"
+
 finish

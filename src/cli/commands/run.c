@@ -28,7 +28,9 @@ const CliUsage cli_run_usage = {
     "minutes (checkpoint: in the case) and when a signal asks the run to leave (SIGINT, SIGTERM, SIGHUP, SIGUSR1 ...)\n"
     "the whole state is put away there; with --resume a run that was cut off goes on as if nothing had been. Then\n"
     "--set may change checkpoint, newton, linear, parallel, petsc, analysis.smallest and .largest, grid.outside and,\n"
-    "in dynamics, analysis.end and .until, and say where the files of a run are that has moved.\n"
+    "in dynamics, analysis.end and .until (stages[N].newton and so on, the end of the last stage alone), and say "
+    "where\n"
+    "the files of a run are that has moved.\n"
     "If the case has a reference.yaml beside it that knows this very case, the results are compared with it.",
   .examples =
     "talus run cases/cantilever/case.yaml\n"
@@ -65,14 +67,41 @@ static PetscBool says_where(const char *set, const Inputs *inputs)
   return PETSC_FALSE;
 }
 
-/* PATH=VALUE names one of these, or a key below it. */
+/* What stands behind "stages[N]." */
+static const char *key_in_stage(const char *set)
+{
+  int n = 0;
+  (void)sscanf(set, "stages[%*d].%n", &n);
+  return set + n;
+}
+
+/* PATH=VALUE names one of these, of the case or of a stage, or a key below it. */
 static PetscBool may_change_on_resume(const char *set)
 {
+  const char *key = key_in_stage(set);
   for (int i = 0; may_change[i]; ++i) {
     const size_t n = strlen(may_change[i]);
-    if (!strncmp(set, may_change[i], n) && (set[n] == '=' || set[n] == '.')) return PETSC_TRUE;
+    if (!strncmp(key, may_change[i], n) && (key[n] == '=' || key[n] == '.')) return PETSC_TRUE;
   }
   return PETSC_FALSE;
+}
+
+static PetscErrorCode SayWhatMayChange(const char *set, int *exit_code)
+{
+  char list[256] = "", hint[512];
+
+  PetscFunctionBeginUser;
+  for (int i = 0; may_change[i]; ++i) {
+    const size_t used = strlen(list);
+    snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", may_change[i]);
+  }
+  snprintf(
+    hint, sizeof hint,
+    "it may change %s (ends in dynamics alone), these of stages (stages[N].newton; the end of the last one), and "
+    "where files are; for all else start a new run: talus run DIR/case.yaml --out ANOTHER --set ...",
+    list);
+  PetscCall(CliUsageError(exit_code, hint, "a resumed run cannot change %.*s", (int)strcspn(set, "="), set));
+  PetscFunctionReturn(0);
 }
 
 /* runs/cantilever for cases/cantilever/case.yaml and for cantilever.yaml. */
@@ -135,12 +164,7 @@ static PetscErrorCode CheckArguments(const CliArguments *a, PetscInt n_set, cons
   else *ok = PETSC_TRUE;
   for (PetscInt i = 0; folder && *ok && i < n_set; ++i) {
     if (may_change_on_resume(set[i]) || says_where(set[i], &inputs)) continue;
-    PetscCall(CliUsageError(
-      exit_code,
-      "it may change checkpoint, newton, linear, petsc, analysis.smallest, "
-      "analysis.largest, grid.outside, where files are and, in dynamics, analysis.end and analysis.until; for all else "
-      "start a new run: talus run DIR/case.yaml --out ANOTHER --set ...",
-      "a resumed run cannot change %.*s", (int)strcspn(set[i], "="), set[i]));
+    PetscCall(SayWhatMayChange(set[i], exit_code));
     *ok = PETSC_FALSE;
   }
   PetscCall(InputsClear(&inputs));
