@@ -152,6 +152,17 @@ static void cones(const PetscReal *given, PetscReal *eta, PetscReal *etabar, Pet
   }
 }
 
+/* That limit of any cone, by the same s_zz (docs/theory.md): R (1 - eta etabar / 3) + eta p = xi c of the plane's p,
+ * whose circle has the radius R sqrt(1 - etabar^2 / 3). */
+static void in_plane(const PetscReal *given, PetscReal strength[2])
+{
+  PetscReal eta, etabar, xi;
+  cones(given, &eta, &etabar, &xi);
+  const PetscReal longer = sqrt(1.0 - etabar * etabar / 3.0) / (1.0 - eta * etabar / 3.0);
+  strength[0] = asin(PetscMin(eta * longer, 1.0));
+  strength[1] = xi * longer * given[COHESION] / cos(strength[0]);
+}
+
 static void prepare(const Elasticity *elastic, const PetscReal *given, PetscReal *q)
 {
   PetscReal xi;
@@ -180,8 +191,8 @@ static const LawWord *const matches[] = {&compression, &extension, &plane_strain
 static const LawParameter parameters[] = {
   STRENGTH_PARAMETERS,
   {"tension_cutoff", "Pa", "largest mean tension; 1e300: none but the apex", 0, PETSC_MAX_REAL, .fallback = NO_CUTOFF},
-  {"match", "", "where the cone has the strength of Mohr-Coulomb", 0, 2, .fallback = MATCH_COMPRESSION,
-   .words = matches},
+  {"match", "", "where the cone has the strength of Mohr-Coulomb: in plane strain take `plane-strain`", 0, 2,
+   .fallback = MATCH_COMPRESSION, .words = matches},
   {.name = NULL},
 };
 
@@ -211,5 +222,6 @@ const Law law_drucker_prager = {
   .scale = scale,
   .prepare = prepare,
   .reduce = reduce,
+  .in_plane = in_plane,
   .check = strength_check,
 };

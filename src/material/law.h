@@ -133,6 +133,9 @@ typedef struct Law {
   /* Of a law with field equivalent_plastic_strain: its first yield stress, and by how much it rises with that strain,
    * Pa. NULL: it does not. */
   void (*hardens)(const PetscReal *parameters, PetscReal *yield, PetscReal *slope);
+  /* Friction angle, rad, and cohesion, Pa, of the Mohr-Coulomb material that has its limit in plane strain, of a law
+   * whose own need not be those: an angle of 90 degrees has none. NULL: its own are. */
+  void (*in_plane)(const PetscReal *given, PetscReal strength[2]);
   /* What is wrong with parameters that are each in their range, or NULL. May itself be NULL. */
   const char *(*check)(const PetscReal *given);
   /* Tell packed parameters the time at the start of a step and its length, s; dt = 0 stands for no step, in

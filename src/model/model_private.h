@@ -342,6 +342,8 @@ PetscErrorCode AdvisePassing(const Model *model, Diag *diag);
 PetscErrorCode AdviseRows(const Model *model, Diag *diag);
 /* The same of what would begin after the end: late.c. */
 void advise_late(const Model *model, Diag *diag);
+/* cones.c. The same of laws whose strength in plane strain is not what their constants say. */
+void advise_cones(const Model *model, Diag *diag);
 /* cells.c. Collective. The same of cells whose points do not hold a uniform stress. */
 PetscErrorCode AdviseCells(const Model *model, Diag *diag);
 /* waves.c. Collective. The same of waves that the mixed formulation slows down. */

@@ -171,6 +171,24 @@ static void test_matches(void **unused)
     }
 }
 
+/* In plane strain each of them comes to the strength that it says it has there. */
+static void test_in_plane(void **unused)
+{
+  (void)unused;
+  for (int match = 0; match < 3; ++match)
+    for (int psi = 0; psi <= 30; psi += 15) {
+      PetscReal strength[2];
+      Point p = {.m = cone(30, psi, 5e3, match)};
+      p.m.law->in_plane(p.m.given, strength);
+      start(&p, 1e5);
+      for (int k = 0; k < 300; ++k) lead(&p, -1e-3, -1e5, PETSC_FALSE);
+      const PetscReal left = mohr_coulomb(strength[0] * 180 / PETSC_PI, strength[1], p.tau[0], p.tau[2]);
+      assert_near("limit in plane strain", left, 0, 1e-6 * fabs(p.tau[2]));
+      if (match == 2) assert_near("angle", strength[0], PETSC_PI / 6, 1e-12);
+      if (match == 2) assert_near("cohesion", strength[1], 5e3, 1e-8);
+    }
+}
+
 /* In triaxial compression and extension q is that of the peak, as c and phi give it. */
 static void test_peaks(void **unused)
 {
@@ -315,9 +333,10 @@ static void test_no_pressure(void **unused)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_golden),   cmocka_unit_test(test_matches),         cmocka_unit_test(test_peaks),
-    cmocka_unit_test(test_softened), cmocka_unit_test(test_softening_opens), cmocka_unit_test(test_lines),
-    cmocka_unit_test(test_drained),  cmocka_unit_test(test_undrained),       cmocka_unit_test(test_no_pressure),
+    cmocka_unit_test(test_golden),      cmocka_unit_test(test_matches),  cmocka_unit_test(test_in_plane),
+    cmocka_unit_test(test_peaks),       cmocka_unit_test(test_softened), cmocka_unit_test(test_softening_opens),
+    cmocka_unit_test(test_lines),       cmocka_unit_test(test_drained),  cmocka_unit_test(test_undrained),
+    cmocka_unit_test(test_no_pressure),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failures = cmocka_run_group_tests(tests, NULL, NULL);

@@ -577,4 +577,13 @@ expect "a pressed block" 0 "$talus" run case.yaml --out pressed --force --quiet
 expect "a pressed block of the mixed formulation" 0 "$talus" run case.yaml --set formulation=mixed --out pressed --force --quiet
 grep -q "a loaded surface has moved by .* cells: with the mixed formulation" err.txt || fail "$name: does not warn"
 
+# --- a circular cone in plane strain: sin phi = 6 sin 35 / sqrt(3) (3 - sin 35), c = 20 kPa tan phi / tan 35 ---
+sed -i -e 's/law: neo-hookean.*/law: drucker-prager, density: 1, young: 1e8, poisson: 0.3, friction_angle: 35, cohesion: 20e3}}/' case.yaml
+cone="as strong as friction_angle 54.97 and cohesion 4.075e+04 Pa"
+warned "a cone in plane strain" "materials: {m: {law: drucker-prager" "$cone" '`match: plane-strain`' --
+warned "a cone of plane strain" -- --set materials.m.match=plane-strain
+warned "a cone about the axis" -- --set kinematics=axisymmetric
+warned "a cone that bears all" "bears any load" -- --set materials.m.friction_angle=45
+warned "a cone without friction" "friction_angle 0 and cohesion 2.309e+04 Pa" -- --set materials.m.friction_angle=0
+
 finish

@@ -237,6 +237,7 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
   PetscCall(AdvisePassing(m, diag));
   advise_late(m, diag);
   advise_dilatancy(m, diag);
+  advise_cones(m, diag);
   PetscCall(AdviseRows(m, diag));
   for (PetscInt k = 0; k < m->c->n_measures; ++k) PetscCall(AdviseReaction(m, m->c->measures + k, diag));
   PetscFunctionReturn(0);
