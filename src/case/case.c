@@ -242,6 +242,24 @@ PetscBool case_dilates(const Case *c)
   return PETSC_FALSE;
 }
 
+PetscBool case_reduces(const Case *c, const BodySpec *body)
+{
+  const PetscBool seeks = c->analysis.type == ANALYSIS_FACTOR;
+  const PetscInt n = seeks ? c->analysis.reduction.n_bodies : c->strength.n_bodies;
+  char *const *bodies = seeks ? c->analysis.reduction.bodies : c->strength.bodies;
+  for (PetscInt k = 0; k < n; ++k)
+    if (!strcmp(bodies[k], body->name)) return PETSC_TRUE;
+  return n == 0;
+}
+
+PetscBool case_reduces_material(const Case *c, PetscInt i)
+{
+  for (PetscInt b = 0; b < c->n_bodies; ++b)
+    if (!c->bodies[b].absent && case_reduces(c, &c->bodies[b]) && !strcmp(c->bodies[b].material, c->materials[i].name))
+      return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 PetscReal analysis_usual_beta(const AnalysisSpec *a) { return 0.25 * (1 - a->bossak) * (1 - a->bossak); }
 PetscReal analysis_usual_gamma(const AnalysisSpec *a) { return 0.5 - a->bossak; }
 

@@ -106,6 +106,9 @@ PetscBool case_is_mixed(const Case *c);
 /* Of a wall or an interface. */
 PetscBool case_has_contact(const Case *c, ContactKind kind);
 PetscBool case_dilates(const Case *c); /* has any material a dilatancy angle? */
+/* Is the strength of a body divided, by a search or from the start? Of material i, as that of such a body? */
+PetscBool case_reduces(const Case *c, const BodySpec *body);
+PetscBool case_reduces_material(const Case *c, PetscInt i);
 /* Equilibrium at every step, no inertia: a factor of safety is found so, too. Else there is inertia. */
 PetscBool case_is_static(const AnalysisSpec *analysis);
 /* Explicit dynamics: share of the critical step that is taken. musl bears all of it, usl two thirds (docs/theory.md,

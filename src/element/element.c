@@ -48,7 +48,10 @@ static PetscBool start(Element *e)
 {
   const ElementSpec *spec = e->spec;
   Material *m = &e->spec->material;
-  if (drive_start(&e->point, m, spec->start.value, spec->pore)) return PETSC_TRUE;
+  if (drive_start(&e->point, m, spec->start.value, spec->pore)) {
+    if (spec->cell > 0) m->law->size(m->parameters, spec->cell, e->point.state);
+    return PETSC_TRUE;
+  }
   /* of a path it has no name */
   diag_error(e->diag, NULL, "the material %s%s(%s) cannot begin with this stress", spec->document ? "" : m->name,
              spec->document ? "" : " ", m->law->name);

@@ -215,7 +215,7 @@ static PetscErrorCode TellsPath(const char *file, PetscBool *tells)
 
 static PetscErrorCode ChooseMaterial(const ElementOptions *o, Diag *diag, ElementSpec *spec)
 {
-  const Case *c = spec->c;
+  const Case *c = case_stage(spec->c, 0);
   const char **names;
   PetscInt chosen = -1;
 
@@ -225,7 +225,7 @@ static PetscErrorCode ChooseMaterial(const ElementOptions *o, Diag *diag, Elemen
     names[m] = c->materials[m].name;
     if (o->material ? !strcmp(o->material, names[m]) : c->n_materials == 1) chosen = m;
   }
-  if (chosen >= 0) PetscCall(MaterialResolve(c, chosen, diag, &spec->material));
+  if (chosen >= 0) PetscCall(ElementMaterial(c, chosen, diag, spec));
   else {
     if (o->material) diag_error(diag, NULL, "the case has no material '%s'", o->material);
     else diag_error(diag, NULL, "which of the materials of the case? --material chooses one");
@@ -286,16 +286,18 @@ static void check_strains(const ElementSpec *spec, Diag *diag)
   }
 }
 
-/* Of a case: which case, material and test. */
+/* Of a case: which case, material and test, and what else the case says of the point. */
 static PetscErrorCode NameIt(const ElementOptions *o, ElementSpec *s)
 {
-  char text[512];
+  char text[512], divided[48] = "", cell[48] = "";
 
   PetscFunctionBeginUser;
   if (s->title && s->title[0]) PetscFunctionReturn(0);
+  if (s->divided > 0) snprintf(divided, sizeof divided, ", strength divided by %.6g", (double)s->divided);
+  if (s->cell > 0) snprintf(cell, sizeof cell, ", in a cell of %.4g m", (double)s->cell);
   if (s->c)
-    snprintf(text, sizeof text, "%s: %s, %s%s", s->c->title && s->c->title[0] ? s->c->title : o->file, s->material.name,
-             o->test, o->undrained ? ", undrained" : "");
+    snprintf(text, sizeof text, "%s: %s, %s%s%s%s", s->c->title && s->c->title[0] ? s->c->title : o->file,
+             s->material.name, o->test, o->undrained ? ", undrained" : "", divided, cell);
   else snprintf(text, sizeof text, "%s", o->file);
   PetscCall(PetscFree(s->title));
   PetscCall(PetscStrallocpy(text, &s->title));

@@ -38,6 +38,8 @@ typedef struct {
   Material material;
   ElementComponents start; /* effective Cauchy stress, Pa, tension positive */
   PetscReal pore;          /* at the start, Pa */
+  PetscReal divided;       /* by which the case divides the strength; 0: by nothing */
+  PetscReal cell;          /* size of the point's cell, m; 0: the law does not ask, or nobody knows */
   PetscInt n_stages;
   ElementStage *stages;
   YamlDocument *document; /* NULL: the material is that of a case... */
@@ -53,5 +55,7 @@ void element_stage(const ElementStage *stage, const DrivePoint *point, DriveCont
                    PetscReal to[6]);
 /* "triaxial, undrained"; "strain yy, stress xx". Returns text. */
 const char *element_stage_name(const ElementStage *stage, size_t size, char *text);
+/* Material i of a case as points of a run begin with it: divided strength, and the size of their cells. */
+PetscErrorCode ElementMaterial(const Case *c, PetscInt i, Diag *diag, ElementSpec *spec);
 /* The stages and the start that a command line tells; mistakes go to diag. */
 PetscErrorCode ElementWords(const ElementOptions *options, Diag *diag, ElementSpec *spec);

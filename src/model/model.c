@@ -273,13 +273,13 @@ static PetscErrorCode FindWeighing(Model *m)
   PetscFunctionReturn(0);
 }
 
-/* Everything after the parts that stand alone; each may find mistakes that make the next
- * meaningless. */
-static PetscErrorCode Build(Model *m, Diag *diag)
+/* Materials, the grid, and the points that bodies become; *good: without mistakes. */
+static PetscErrorCode BuildBodies(Model *m, Diag *diag, PetscBool *good)
 {
   PetscInt errors;
 
   PetscFunctionBeginUser;
+  *good = PETSC_FALSE;
   m->method = method_find(m->c->method);
   m->formulation = formulation_find(m->c->formulation);
   m->scheme = time_scheme_of(&m->c->analysis);
@@ -299,7 +299,20 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(CreateBodies(m, diag));
   raised_advise(m, diag);
   PetscCall(DiagReduce(m->comm, diag, &errors));
-  if (errors) PetscFunctionReturn(0);
+  *good = (PetscBool)!errors;
+  PetscFunctionReturn(0);
+}
+
+/* Everything after the parts that stand alone; each may find mistakes that make the next
+ * meaningless. */
+static PetscErrorCode Build(Model *m, Diag *diag)
+{
+  PetscInt errors;
+  PetscBool good;
+
+  PetscFunctionBeginUser;
+  PetscCall(BuildBodies(m, diag, &good));
+  if (!good) PetscFunctionReturn(0);
   PetscCall(WallsStart(m, diag));
   PetscCall(BoundaryCreate(m->grid, m->c, diag, &m->boundary));
   PetscCall(LoadsCreate(m->grid, m->c, m->points, m->method->restores_grid, diag, &m->loads));
@@ -327,6 +340,31 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode NewModel(MPI_Comm comm, const Case *c, Model **model)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscNew(model));
+  (*model)->comm = comm;
+  (*model)->c = c;
+  (*model)->dim = kinematics_dim(c->kinematics);
+  (*model)->time = c->start; /* what a stage moves stands where it begins then */
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ModelCellSizes(const Case *c, Diag *diag, PetscReal *range)
+{
+  Model *m;
+  PetscBool good;
+
+  PetscFunctionBeginUser;
+  PetscCall(NewModel(PETSC_COMM_SELF, c, &m));
+  PetscCall(BuildBodies(m, diag, &good));
+  PetscCall(PetscArrayzero(range, 2 * c->n_bodies));
+  if (good) sizes_of_bodies(m, range);
+  PetscCall(ModelDestroy(&m));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Diag *diag, Model **model)
 {
   Model *m;
@@ -334,11 +372,7 @@ PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Diag *diag, Model **mod
 
   PetscFunctionBeginUser;
   *model = NULL;
-  PetscCall(PetscNew(&m));
-  m->comm = comm;
-  m->c = c;
-  m->dim = kinematics_dim(c->kinematics);
-  m->time = c->start; /* what a stage moves stands where it begins then */
+  PetscCall(NewModel(comm, c, &m));
   PetscCall(OptionsApply(m));
   PetscCall(MemoryHeld(comm, diag, &m->machine_memory));
   PetscCall(OptionsCheck(m, diag));

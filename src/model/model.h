@@ -244,6 +244,9 @@ typedef struct {
  * *model stays NULL. */
 PetscErrorCode ModelCreate(MPI_Comm comm, const Case *c, Diag *diag, Model **model);
 PetscErrorCode ModelDestroy(Model **model);
+/* Of one process. Smallest and largest size of the cells in which points of each body start, m: 2 n_bodies. 0 of one
+ * without points, and of all where grid or bodies have mistakes, which go to diag. */
+PetscErrorCode ModelCellSizes(const Case *c, Diag *diag, PetscReal *range);
 
 /* Collective. Of a model that was just created: the equilibrium that the case asks for before the first
  * step. If it is not found report->outcome is no acceptance, and the model is fit for nothing but

@@ -50,6 +50,8 @@ PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
 PetscErrorCode NonlocalStep(Model *model);
 /* Tell the laws that have a length the sizes of the cells in which their points start (start/laws.c). */
 void sizes_start(const Model *model);
+/* Smallest and largest of them in each body, m, on this rank: 2 n_bodies, all 0 before. */
+void sizes_of_bodies(const Model *model, PetscReal *range);
 /* Tell the laws that ask for it where their points start. */
 void places_start(const Model *model);
 /* The same before a step, of laws that ask where their points are now. */

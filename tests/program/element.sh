@@ -42,6 +42,27 @@ says out.txt "A block: clay, triaxial, undrained"
 awk -F, 'NR > 150 && ($19 < 49900 || $19 > 50300) {bad = 1} END {exit bad || NR != 202}' b/element.csv || fail "$name: q is not 50 kPa"
 expect "a default directory" 0 "$talus" element case.yaml --material rubber --test oedometer --to 0.1 --set materials.rubber.young=2e6
 [ -s runs/element/case/rubber-oedometer/element.csv ] || fail "$name: no table"
+# Half of the strength in plane strain, undrained, Tresca: s_xx - s_yy = 2 (c / 2); of that body alone
+expect "a divided strength" 0 "$talus" element case.yaml --material clay --test biaxial --to 0.02 --undrained --set 'strength={factor: 2}' --out half
+says out.txt "strength divided by 2"
+awk -F, 'END { q = $11 - $12; exit !(q > 24990 && q < 25010) }' half/element.csv || fail "$name: $(tail -n 1 half/element.csv)"
+expect "another body's" 0 "$talus" element case.yaml --material rubber --test biaxial --to 0.02 --set 'strength={factor: 2}' --out half
+lacks out.txt "divided"
+# What softens does so h / reference_size times as fast
+sed 's/clay: .*/clay: {law: mohr-coulomb-softening, density: 1800, young: 20e6, poisson: 0.3, friction_angle: 0, cohesion: 25e3, residual_cohesion: 5e3, residual_strain: 0.1, reference_size: 0.25}/' case.yaml >soft.yaml
+scale() { awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "softening_scale") k = i } END { print $k }' "$1/element.csv"; }
+expect "a cell" 0 "$talus" element soft.yaml --material clay --test triaxial --confining 1e5 --to 0.02 --out soft
+says out.txt "in a cell of 0.5 m"
+[ "$(scale soft)" = 2 ] || fail "$name: $(scale soft)"
+lacks err.txt "warning"
+expect "two bodies" 0 "$talus" element soft.yaml --material clay --test triaxial --confining 1e5 --to 0.02 --out soft --set 'grid={box: {min: [0, 0], max: [2, 1]}, counts: [4, 2], grading: {x: 8}}' \
+  --set 'bodies[0].shape.box.max=[0.5, 1]' --set 'bodies[1]={name: right, shape: {box: {min: [0.5, 0], max: [2, 1]}}, material: clay}'
+says err.txt "cells of 'clay' are not of one size" "m in 'block'" "m in 'right'"
+expect "no grid" 0 "$talus" element soft.yaml --material clay --test triaxial --confining 1e5 --to 0.02 --out soft --set 'grid={mesh: none.msh}'
+says err.txt "how large the cells of 'clay' are is not known"
+[ "$(scale soft)" = 1 ] || fail "$name: $(scale soft)"
+expect "no length" 0 "$talus" element soft.yaml --material clay --test triaxial --confining 1e5 --to 0.02 --out soft --set materials.clay.reference_size=0
+lacks out.txt "in a cell"
 expect "which material" 2 "$talus" element case.yaml --test oedometer --to 0.1
 says err.txt "which of the materials" "clay, rubber"
 expect "another material" 2 "$talus" element case.yaml --material clya --test oedometer --to 0.1

@@ -2,25 +2,10 @@
  * and a step to the equilibrium with another factor. */
 #include "model/model_private.h"
 
-static PetscBool is_reduced(const Case *c, const BodySpec *body)
-{
-  const PetscBool seeks = c->analysis.type == ANALYSIS_FACTOR;
-  const PetscInt n = seeks ? c->analysis.reduction.n_bodies : c->strength.n_bodies;
-  char *const *bodies = seeks ? c->analysis.reduction.bodies : c->strength.bodies;
-  for (PetscInt k = 0; k < n; ++k)
-    if (!strcmp(bodies[k], body->name)) return PETSC_TRUE;
-  return n == 0;
-}
-
 /* Is the strength of material i divided? */
 static PetscBool material_is_reduced(const Model *m, PetscInt i)
 {
-  const Case *c = m->c;
-  if (!m->materials[i].law->reduce) return PETSC_FALSE;
-  for (PetscInt b = 0; b < c->n_bodies; ++b)
-    if (!c->bodies[b].absent && is_reduced(c, &c->bodies[b]) && !strcmp(c->bodies[b].material, c->materials[i].name))
-      return PETSC_TRUE;
-  return PETSC_FALSE;
+  return (PetscBool)(m->materials[i].law->reduce && case_reduces_material(m->c, i));
 }
 
 /* Is the friction of body b on a wall, or in an interface, divided? Of a joint, too, of which one side keeps its own
@@ -28,10 +13,10 @@ static PetscBool material_is_reduced(const Model *m, PetscInt i)
 static PetscBool contact_is_reduced(const Model *m, PetscInt partner, PetscInt b)
 {
   const Case *c = m->c;
-  if (partner < c->n_walls) return is_reduced(c, &c->bodies[b]);
+  if (partner < c->n_walls) return case_reduces(c, &c->bodies[b]);
   const InterfaceSpec *s = &c->interfaces[partner - c->n_walls];
-  return (PetscBool)(is_reduced(c, &c->bodies[case_body(c, s->between[0])]) ||
-                     is_reduced(c, &c->bodies[case_body(c, s->between[1])]));
+  return (PetscBool)(case_reduces(c, &c->bodies[case_body(c, s->between[0])]) ||
+                     case_reduces(c, &c->bodies[case_body(c, s->between[1])]));
 }
 
 void strength_of_contact(Model *m)
@@ -67,7 +52,7 @@ static void check_body(const Model *m, PetscInt b, Diag *diag)
 {
   const Case *c = m->c;
   const BodySpec *body = &c->bodies[b];
-  const PetscBool reduced = is_reduced(c, body);
+  const PetscBool reduced = case_reduces(c, body);
   char path[256];
   for (PetscInt i = 0; i < c->n_materials; ++i) {
     if (strcmp(body->material, c->materials[i].name)) continue;

@@ -44,6 +44,16 @@ void places_step(const Model *m)
   }
 }
 
+void sizes_of_bodies(const Model *m, PetscReal *range)
+{
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscReal size = cell_size(m->grid, m->points->cell[p]);
+    PetscReal *r = range + 2 * m->points->body[p];
+    r[0] = r[1] > 0 ? PetscMin(r[0], size) : size;
+    r[1] = PetscMax(r[1], size);
+  }
+}
+
 void sizes_start(const Model *m)
 {
   for (PetscInt p = 0; p < m->points->n; ++p) {

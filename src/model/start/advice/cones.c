@@ -1,5 +1,5 @@
-/* Circular cones in plane strain: one that meets Mohr-Coulomb's pyramid in triaxial tests bears much more there, or less
- * (docs/theory.md, "Laws"). */
+/* Circular cones in plane strain: one that meets Mohr-Coulomb's pyramid in triaxial tests bears much more there, or
+ * less (docs/theory.md, "Laws"). */
 #include "material/strength.h"
 #include "model/model_private.h"
 
