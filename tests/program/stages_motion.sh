@@ -202,6 +202,14 @@ for method in fem mpm; do
   done
 done
 sed 's/^  - {name: clay.*/&\n  - {name: more, shape: {box: {min: [0, 2], max: [2, 2.5]}}, material: clay}/' later.yaml >more.yaml
+# Overconsolidated clay that is pulled out of 100 kPa bears a tension along y
+sed -e 's/k0: 0.6/stress: {xx: -1e5, yy: -1e5, zz: -1e5}/; s/ocr: 2/ocr: 20/; s/^loads.*/loads: {pressures: [{on: {body: clay, x: 2}, value: 1e5, amplitude: [[0, 1], [1, 1]]}]}/' -e 's/^kinematics.*/kinematics: axisymmetric/' \
+  -e 's/^boundary.*/boundary: [{on: {y: 0}, fix: [y]}, {on: {x: 0}, fix: [x]}, {on: {y: 2}, displacement: {y: 0.12}}]/' -e 's/^analysis.*/analysis: {type: static, steps: 10}/' clay.yaml >pulled.yaml
+turn
+expect "clay that is pulled on $ranks" 0 on_ranks $ranks "$talus" run pulled.yaml --out pulled --force
+says err.txt "100 % of 'clay' is pulled at the end"
+expect "clay that is pressed" 0 "$talus" run pulled.yaml --out pulled --force --set 'boundary[2].displacement.y=-0.12'
+lacks err.txt "is pulled"
 expect "clay that comes" 2 "$talus" run more.yaml --out more --set method=mpm
 says err.txt "'more' is of modified-cam-clay, which has no state without stress"
 

@@ -439,6 +439,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   PetscCall(WarnOfMovedLoads(m, diag));
   PetscCall(WarnOfShear(m, diag));
   PetscCall(WarnOfStretch(m, diag));
+  PetscCall(WarnOfPull(m, diag));
   warn_of_sunk(m, PETSC_FALSE, diag);
   warn_of_no_limit(m, diag);
   warn_of_unstable(m, diag);
