@@ -255,6 +255,8 @@ PetscErrorCode ModelEquilibrate(Model *model, StepReport *report);
 /* Collective. Body force besides gravity, NULL for none. Before the first step it also enters the
  * initial acceleration. */
 PetscErrorCode ModelSetBodyForce(Model *model, BodyForce force, void *context);
+/* Collective. Nodes that an entry of `boundary` takes, and those of them beside material: start/advice/beside.c. */
+PetscErrorCode ModelCountPrescribed(const Model *model, PetscInt entry, PetscInt count[2]);
 /* Warn of a case in which nothing happens, once all that its caller gives is known: start/advice/still.c. */
 void model_advise_still(const Model *model, Diag *diag);
 /* Collective. Factors of a load of the case that vary from place to place, NULL for none; likewise. */

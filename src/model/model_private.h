@@ -340,6 +340,8 @@ void advise_jumps(const Model *model, Diag *diag);
 void advise_down(const Model *model, Diag *diag);
 /* The same of prescribed nodes that stay while what they move passes them: passing.c. */
 PetscErrorCode AdvisePassing(const Model *model, Diag *diag);
+/* beside.c. Collective. The same of what is prescribed where no material is; once nodes know what touches them. */
+PetscErrorCode AdviseBeside(const Model *model, Diag *diag);
 /* The same of a history of one row that holds means over the whole run: rows.c. */
 PetscErrorCode AdviseRows(const Model *model, Diag *diag);
 /* The same of what would begin after the end: late.c. */

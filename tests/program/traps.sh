@@ -374,6 +374,17 @@ warned "a small way" -- --set boundary[2].displacement.x=0.04
 warned "fem" -- --set method=fem --set 'grid.box={min: [0, 0], max: [4, 1]}'
 warned "a place that goes along" -- --set boundary[2].moves=true --set boundary[2].on.x='[-0.5, 0.5]'
 warned "a plane that goes along" "this place has no depth along x" -- --set boundary[2].moves=true
+# what is prescribed where no material is: in statics of mpm where it moves something, on a mesh always
+beside="warning: no material is beside the 5 nodes that boundary[3] takes: what it prescribes does nothing"
+apart() { warned "$@" --set 'boundary[2]={on: {x: [3, 4]}, displacement: {x: 0}}'; }
+apart "moved beside the body" "$beside" -- --set 'boundary[3]={on: {x: -1}, displacement: {x: 0.01}}'
+says out.txt "boundary[3]: moves 5 nodes, none beside material"
+for held in '{on: {x: -1}, fix: [x]}' '{on: {x: -1}, displacement: {x: 0}}' '{on: {x: [-1, 0]}, displacement: {x: 0.01}}' \
+  '{on: {shape: {box: {min: [-1, 1.4], max: [4, 2]}}}, moves: true, displacement: {y: -0.01}}'; do
+  apart "where material may come: $held" -- --set "boundary[3]=$held"
+done
+apart "dynamics" -- --set analysis='{type: dynamic, end: 0.1, step: 0.01}' --set 'boundary[3]={on: {x: -1}, velocity: {x: 0.01}}'
+apart "held beside a mesh" "$beside" -- --set method=fem --set 'boundary[3]={on: {x: -1}, fix: [x]}'
 expect "a wall for it" 0 "$talus" run case.yaml --out run --force --quiet \
   --set 'boundary=[{on: {boundary: right}, fix: [x]}, {on: {boundary: bottom}, fix: [y]}]' \
   --set 'walls=[{name: press, shape: {half-space: {point: [0, 0], normal: [1, 0]}}, contact: stick, motion: [{displacement: {x: 0.4}}]}]' \

@@ -336,27 +336,16 @@ static PetscErrorCode ReportSizes(Model *m, Diag *diag, FILE *out)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode CountHeld(const Model *m, PetscInt motion, PetscInt *all)
-{
-  const MotionNodes *nodes = &m->boundary->motion[motion];
-  PetscInt local = 0;
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < nodes->n; ++i) local += nodes->node[i] < m->grid->n_owned;
-  PetscCall(MPIU_Allreduce(&local, all, 1, MPIU_INT, MPI_SUM, m->comm));
-  PetscFunctionReturn(0);
-}
-
 /* What nobody wrote into the case file. */
 static PetscErrorCode ReportAxis(const Model *m, FILE *out)
 {
-  PetscInt all;
+  PetscInt count[2];
 
   PetscFunctionBeginUser;
   if (boundary_axis(m->boundary) < 0) PetscFunctionReturn(0);
-  PetscCall(CountHeld(m, boundary_axis(m->boundary), &all));
+  PetscCall(ModelCountPrescribed(m, boundary_axis(m->boundary), count));
   say(m, out, "#   full circle: volumes, masses, forces and energies are those of the whole body of revolution\n");
-  say(m, out, "#   axis: %d nodes at x = 0 are held along x, whatever `boundary` says\n", (int)all);
+  say(m, out, "#   axis: %d nodes at x = 0 are held along x, whatever `boundary` says\n", (int)count[0]);
   PetscFunctionReturn(0);
 }
 
@@ -372,9 +361,10 @@ static PetscErrorCode ReportSets(const Model *m, FILE *out)
     else say(m, out, "#   boundary %s: %d nodes, %d faces\n", set->name, (int)all[0], (int)all[1]);
   }
   for (PetscInt k = 0; k < m->c->n_boundary; ++k) {
-    PetscInt all;
-    PetscCall(CountHeld(m, k, &all));
-    say(m, out, "#   boundary[%d]: moves %d nodes\n", (int)k, (int)all);
+    PetscInt count[2];
+    PetscCall(ModelCountPrescribed(m, k, count));
+    say(m, out, "#   boundary[%d]: moves %d nodes%s\n", (int)k, (int)count[0],
+        count[0] && !count[1] ? ", none beside material" : "");
   }
   PetscCall(ReportAxis(m, out));
   PetscFunctionReturn(0);
