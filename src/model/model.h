@@ -99,6 +99,7 @@ typedef struct {
   /* the largest with an equilibrium and the smallest without, and their middle when the search is
    * over; nan: not known */
   PetscReal lower, upper, value;
+  PetscBool lost;   /* is the search over, and all it knows is `lower`? */
   PetscBool trying; /* a step for another factor: it is not made smaller */
   PetscReal reach;  /* no node of a body that stands moves farther in such a step, m */
   /* of the last try from this state that slid: by how much its factor was larger, and how far it went, m; 0: none */

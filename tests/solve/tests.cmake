@@ -1,4 +1,5 @@
 talus_test(solve/test_step_control)
+talus_test(solve/test_line_search)
 talus_test(solve/test_constraints)
 talus_test(solve/test_blocks RANKS 1 2 3)
 talus_test(solve/test_levels RANKS 1 2 3)

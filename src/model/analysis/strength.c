@@ -148,8 +148,8 @@ void strength_go_on(Model *m, const Model *before, Diag *diag)
   else if (before->strength.upper > 0) strength_set(m, beyond * before->strength.upper);
   else
     diag_error(diag, "strength.beyond_failure",
-               "the search before this stage has found no factor that fails (up to %g)",
-               (double)before->c->analysis.reduction.most);
+               "the search before this stage has found no factor that fails: it stands with %g",
+               (double)before->strength.lower);
 }
 
 static PetscReal increment_of(const Model *m, PetscInt node)

@@ -2,8 +2,10 @@
 #include "model/measure/measure.h"
 
 static const MeasureNumber *const words[] = {
-  WORD("value", "the middle of the bracket, when the search is over; until then nan", "", OF_MODEL,
-       .kept = offsetof(Model, strength.value)),
+  WORD("value",
+       "the middle of the bracket, when the search is over; nan until then, and where Newton's method lost its way "
+       "before anything slid",
+       "", OF_MODEL, .kept = offsetof(Model, strength.value)),
   WORD("lower", "the largest factor with an equilibrium so far; nan: none", "", OF_MODEL,
        .kept = offsetof(Model, strength.lower)),
   WORD("upper", "the smallest factor without one so far; nan: none", "", OF_MODEL,

@@ -267,6 +267,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
     .idle = m->nodes->idle,
     .asked = m->asked,
     .stiff = is_stiff(m, dt),
+    .weaker = m->strength.trying,
     .wide = m->space->basis->nodes != BASIS_OF_CELLS,
   };
   p->in.half = m->symmetric && !m->space->support->n_runs;

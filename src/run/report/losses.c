@@ -408,6 +408,15 @@ static void warn_of_no_limit(const Model *m, Diag *diag)
                                       : "what is told is the largest load that was reached");
 }
 
+static void warn_of_no_factor(const Model *m, Diag *diag)
+{
+  if (!m->strength.lost) return;
+  diag_warning(
+    diag, "analysis.type",
+    "no factor of safety was found, it is larger than %.4g: Newton's method lost its way before anything slid",
+    (double)m->strength.lower);
+}
+
 PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
 {
   char path[256];
@@ -442,6 +451,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   PetscCall(WarnOfPull(m, diag));
   warn_of_sunk(m, PETSC_FALSE, diag);
   warn_of_no_limit(m, diag);
+  warn_of_no_factor(m, diag);
   warn_of_unstable(m, diag);
   warn_of_walls_through(m, diag);
   PetscFunctionReturn(0);

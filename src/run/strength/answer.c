@@ -68,8 +68,16 @@ static PetscErrorCode TellBracket(const StrengthRun *s, const char *by, Says yes
   PetscFunctionReturn(0);
 }
 
-/* Newton's method gave up where nothing ran away, and what stood before neither moved as if it were to slide nor
- * dissipated all work. What is lost by itself may run away, or move, in the smallest of steps. */
+/* Did the body slide with the smallest factor that fails? */
+static PetscBool slid(const StrengthRun *s)
+{
+  for (PetscInt i = 1; i < s->n; ++i)
+    if (s->tries[i].outcome == TRY_SLIDES && s->tries[i].factor == s->search.failed) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Newton's method gave up where nothing ran away or slid, and what stood before neither moved as if it were to slide
+ * nor dissipated all work. What is lost by itself may run away, or move, in the smallest of steps. */
 static PetscBool is_doubtful(const StrengthRun *s)
 {
   const PetscInt last = strength_stood_before(s, s->n - 1);
@@ -78,7 +86,7 @@ static PetscBool is_doubtful(const StrengthRun *s)
     if (s->tries[i].outcome == TRY_LOST && s->tries[i].factor >= s->search.failed) lost = PETSC_TRUE;
     if (stands(s, i)) flows = stores_nothing(s, i);
   }
-  if (!lost || last == 0) return PETSC_FALSE;
+  if (!lost || last == 0 || slid(s)) return PETSC_FALSE;
   const PetscInt before = strength_stood_before(s, last);
   const PetscReal taken = strength_share(s->tries[last].factor - s->tries[before].factor, s->tries[last].factor);
   return (PetscBool)(!flows || s->tries[last].moved < 0.1 * STRENGTH_SLIDES * s->height * taken);
@@ -97,10 +105,13 @@ static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *d
   if (failed <= spec->from)
     PetscCall(
       RunDirLog(dir, "warning = it does not stand with a factor of %.4g: sought downwards", (double)spec->from));
-  if (is_doubtful(s))
+  if (m->strength.lost) {
     PetscCall(RunDirLog(dir,
-                        "warning = Newton's method lost its way before anything slid: the factor may be larger "
-                        "(another mesh, formulation or dilatancy angle tells)"));
+                        "warning = Newton's method lost its way before anything slid: no factor is found, it is "
+                        "larger (another mesh, formulation, points_per_cell or dilatancy angle tells)"));
+    PetscCall(RunDirLog(dir, "factor of safety > %.4g", (double)stable));
+    PetscFunctionReturn(0);
+  }
   PetscCall(RunDirLog(dir, "factor of safety = %.*f (%.*f ... %.*f)", digits, (double)m->strength.value, digits,
                       (double)stable, digits, (double)failed));
   PetscFunctionReturn(0);
@@ -120,7 +131,9 @@ PetscErrorCode StrengthEnd(const StrengthRun *s, Model *m, RunDir *dir)
     PetscCall(RunDirLog(dir, "factor of safety < %.4g: %s", (double)failed,
                         over ? "it does not stand, however strong" : unfinished));
   else {
-    m->strength.value = 0.5 * (stable + failed);
+    m->strength.lost = is_doubtful(s);
+    if (m->strength.lost) m->strength.upper = NAN;
+    else m->strength.value = 0.5 * (stable + failed);
     PetscCall(TellAnswer(s, m, dir));
   }
   PetscFunctionReturn(0);

@@ -70,8 +70,15 @@ static PetscBool is_too_far(const Line *line, PetscReal slope0, PetscReal norm0)
   return PetscAbsReal(line->slope) > line->enough * PetscAbsReal(slope0) || line->norm > EXPLODED * norm0;
 }
 
-/* Find where the slope vanishes between low (slope of the sign of slope0) and high (the other sign,
- * or the law fails there). */
+/* Is where the slope vanishes farther away? Of a wary search a slope of the same sign that has grown lies beyond it: a
+ * direction of Newton's begins with slope0 (1 - lambda), whatever its tangent is. */
+static PetscBool is_before(const Line *line, PetscReal slope0, PetscReal norm0)
+{
+  const PetscBool grown = PetscAbsReal(line->slope) > PetscAbsReal(slope0);
+  return line->slope * slope0 > 0 && !(line->wary && grown) && line->norm <= EXPLODED * norm0;
+}
+
+/* Find where the slope vanishes between low (is_before) and high (any other, or the law fails there). */
 PetscErrorCode LineShorten(Line *line, PetscReal slope0, PetscReal norm0)
 {
   PetscReal low = 0, slope_low = slope0, high = line->lambda, slope_high = line->slope;
@@ -81,7 +88,7 @@ PetscErrorCode LineShorten(Line *line, PetscReal slope0, PetscReal norm0)
     const PetscReal share =
       slope_high == PETSC_INFINITY || slope_low * slope_high >= 0 ? 0.5 : slope_low / (slope_low - slope_high);
     PetscCall(LineTry(line, low + PetscMax(0.1, PetscMin(0.9, share)) * (high - low)));
-    if (line->slope * slope0 > 0 && line->norm <= EXPLODED * norm0) low = line->lambda, slope_low = line->slope;
+    if (is_before(line, slope0, norm0)) low = line->lambda, slope_low = line->slope;
     else high = line->lambda, slope_high = line->slope;
   }
   for (PetscInt k = 0; k < MAX_TRIES && line->norm == PETSC_INFINITY; ++k) PetscCall(LineTry(line, 0.5 * line->lambda));
@@ -101,7 +108,7 @@ static PetscReal first_length(LineSearchMemory *memory, PetscInt iteration, Pets
 PetscErrorCode LineSearchDescend(SNESLineSearch search, void *memory)
 {
   Search s = {.memory = memory};
-  Line line = {.evaluate = EvaluateAt, .context = &s, .enough = s.memory->enough};
+  Line line = {.evaluate = EvaluateAt, .context = &s, .enough = s.memory->enough, .wary = s.memory->wary};
   Vec unused;
   PetscInt iteration;
   PetscReal xnorm, ynorm, norm0, slope0;
@@ -115,7 +122,7 @@ PetscErrorCode LineSearchDescend(SNESLineSearch search, void *memory)
   PetscCall(VecNorm(s.f, NORM_2, &norm0));
   if (s.memory->choose) PetscCall(s.memory->choose(s.memory->context, iteration, s.f, norm0));
   PetscCall(LineTry(&line, first_length(memory, iteration, norm0)));
-  if (iteration || line.norm == PETSC_INFINITY) PetscCall(LineShorten(&line, slope0, norm0));
+  if (iteration || line.wary || line.norm == PETSC_INFINITY) PetscCall(LineShorten(&line, slope0, norm0));
   if (line.norm == PETSC_INFINITY) {
     PetscCall(SNESLineSearchSetReason(search, SNES_LINESEARCH_FAILED_NANORINF));
     PetscFunctionReturn(0);

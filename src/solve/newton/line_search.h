@@ -2,7 +2,7 @@
 #pragma once
 #include <petscsnes.h>
 
-/* Line.enough: what most steps take, and what those of stiff matter that yields (StepProblem.stiff) */
+/* Line.enough: what most steps take, and what those of matter that yields everywhere do (StepProblem.stiff, weaker) */
 #define ENOUGH 0.8
 #define ENOUGH_STIFF 0.5
 
@@ -12,6 +12,7 @@ typedef struct {
   PetscErrorCode (*evaluate)(void *context, PetscReal lambda, PetscReal *norm, PetscReal *slope);
   void *context;
   PetscReal enough;              /* share of the work along the direction that may be left */
+  PetscBool wary;                /* where the work has grown, does the search go back? */
   PetscReal lambda, norm, slope; /* the last place tried; norm and slope infinite where the law fails */
 } Line;
 
@@ -23,6 +24,7 @@ PetscErrorCode LineShorten(Line *line, PetscReal slope0, PetscReal norm0);
 /* What a search remembers from one iteration of a step to the next. */
 typedef struct {
   PetscReal enough; /* Line.enough */
+  PetscBool wary;   /* Line.wary; and is the first direction of a step shortened as the others are? */
   PetscReal best;   /* smallest residual of this step */
   PetscInt stale;   /* iterations since it was met */
   PetscInt block;   /* unknowns per node of which the last is a pressure; 0: none is */

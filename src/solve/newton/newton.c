@@ -311,7 +311,8 @@ static PetscErrorCode Begin(Newton *n)
   StepProblem *p = n->problem;
 
   PetscFunctionBeginUser;
-  n->search.enough = p->stiff ? ENOUGH_STIFF : ENOUGH;
+  n->search.enough = p->stiff || p->weaker ? ENOUGH_STIFF : ENOUGH;
+  n->search.wary = p->weaker;
   PetscCall(EliminationBegin(&n->elimination, p));
   PetscCall(UpdateSaddle(n));
   PetscCall(UpdateProjection(n));

@@ -57,6 +57,9 @@ typedef struct {
    * two iterations, and none shortens the step of all (docs/theory.md, "Stiff matter that yields"). So is what is
    * pressed to its limit. */
   PetscBool stiff;
+  /* Has strength fallen since the last step? What yields does so at the first guess already, and the first direction
+   * is not an elastic one, but may go as far as any (docs/theory.md, "Factor of safety"). */
+  PetscBool weaker;
   PetscBool grips; /* does the first guess go along with walls, whatever friction bears? */
   /* Do points see more nodes than those of a cell? Then a tangent takes many times as long as a residual. */
   PetscBool wide;
