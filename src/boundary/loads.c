@@ -288,9 +288,11 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
 {
   Loads *l;
   PetscInt faces;
+  Diag *unheard;
   char list[64], path[80];
 
   PetscFunctionBeginUser;
+  PetscCall(DiagCreate(&unheard)); /* of what waits the stage tells in which it begins */
   PetscCall(PetscNew(&l));
   l->c = c;
   l->dim = grid->dim;
@@ -304,18 +306,20 @@ PetscErrorCode LoadsCreate(const Grid *grid, const Case *c, const Points *points
   if (l->carriers->components[POINT_EDGE] && c->kinematics->hoop) l->carriers->components[POINT_LEAN] = l->dim;
   for (PetscInt k = 0; k < c->n_loads; ++k) {
     const LoadKind kind = c->loads[k].kind;
+    Diag *tell = c->loads[k].waits ? unheard : diag;
     PetscCall(PetscSNPrintf(path, sizeof path, "%s.%s", case_load_path(c, k, list), kind == LOAD_POINT ? "at" : "on"));
     if (kind == LOAD_POINT) {
-      PetscCall(PointLoad(l, grid, points, k, fills, path, diag));
+      PetscCall(PointLoad(l, grid, points, k, fills, path, tell));
       continue;
     }
     if (c->loads[k].on.body) PetscCall(BodyTraction(l, grid, points, k, fills, &faces));
     else if (kind == LOAD_PRESSURE) PetscCall(CarryBoundary(l, grid, points, k, &faces));
     else PetscCall(GridTraction(l, grid, points, k, &faces));
-    PetscCall(LoadSidesTell(grid, c, points, k, fills, faces, path, diag));
+    PetscCall(LoadSidesTell(grid, c, points, k, fills, faces, path, tell));
   }
   PetscCall(PointsSort(l->carriers));
   PetscCall(LoadFactorsCheck(l, grid->comm, diag));
+  PetscCall(DiagDestroy(&unheard));
   *loads = l;
   PetscFunctionReturn(0);
 }

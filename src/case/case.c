@@ -97,7 +97,7 @@ static PetscErrorCode BoundaryAndLoadsClear(Case *c)
     PetscCall(PetscFree(c->boundary[i].name));
   }
   PetscCall(PetscFree(c->boundary));
-  for (PetscInt i = 0; i < c->n_loads; ++i) {
+  for (PetscInt i = 0; i < case_acting_loads(c); ++i) {
     PetscCall(PetscFree(c->loads[i].name));
     PetscCall(PetscFree(c->loads[i].factor));
     PetscCall(SelectorClear(&c->loads[i].on));
@@ -342,9 +342,16 @@ const char *case_load_path(const Case *c, PetscInt k, char path[64])
   return path;
 }
 
+PetscInt case_acting_loads(const Case *c)
+{
+  PetscInt n = c->n_loads;
+  while (n > 0 && c->loads[n - 1].waits) --n;
+  return n;
+}
+
 PetscBool case_load_follows(const Case *c)
 {
-  for (PetscInt k = 0; k < c->n_loads; ++k)
+  for (PetscInt k = 0; k < case_acting_loads(c); ++k)
     if (c->loads[k].kind == LOAD_PRESSURE) return PETSC_TRUE;
   return PETSC_FALSE;
 }

@@ -99,7 +99,9 @@ void case_begin(Case *c, const PetscReal *start);
 
 /* Where load k stands in the case: loads.tractions[0], loads.points[2]... Returns path. */
 const char *case_load_path(const Case *c, PetscInt k, char path[64]);
-/* Does a load follow the surface that it acts on? */
+/* Loads but for those that wait for a later stage, which stand behind these. */
+PetscInt case_acting_loads(const Case *c);
+/* Does a load that acts follow the surface that it acts on? */
 PetscBool case_load_follows(const Case *c);
 /* Is the pressure an unknown beside the displacements? */
 PetscBool case_is_mixed(const Case *c);

@@ -10,6 +10,7 @@
 #include "method/method.h"
 #include "method/time/time_scheme.h"
 #include "model/model.h"
+#include "model/stage/stage.h"
 
 static void destroy_document(void *document)
 {
@@ -410,6 +411,8 @@ static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag 
     check_windows(whole, k, diag);
     stage_advise_repeated(whole, k, diag);
   }
+  for (PetscInt k = whole->n_stages - 1; k > 0; --k)
+    PetscCall(LoadsWait(whole->stage_case[k], whole->stage_case[k - 1]));
   PetscFunctionReturn(0);
 }
 

@@ -136,7 +136,8 @@ static void test_refused(void **state)
   first.load[0].value[1] = -1;
   refused(&first, &then, NULL);
   then.load[0].on.has[0] = PETSC_TRUE;
-  refused(&first, &then, "can begin only with the undeformed body");
+  then.c.stage = 0; /* the state is that of another run */
+  refused(&first, &then, "of which the run of `initial` knows nothing");
 }
 
 /* While what was there fades and what the stage brings grows, the foot bears what acts: in proportion, as the whole of

@@ -12,6 +12,9 @@ typedef struct {
   PetscReal value[3]; /* N/m2 of undeformed boundary, or N; pressure: value[0], N/m2 of the present one */
   Amplitude amplitude;
   char *factor; /* a formula of LoadPlace that multiplies the value; NULL: 1 */
+  /* 0, or the number of a later stage in which it begins: till then its carriers go with the material, and push
+   * nothing. Strings are that stage's. Such loads stand behind all others. */
+  PetscInt waits;
 } LoadSpec;
 
 /* What the formula of a load may name: x y z, where the material is when the step begins, X Y Z, where

@@ -50,11 +50,12 @@ PetscErrorCode LimitWatch(Model *m, PetscReal dt)
 /* "at load factor 0.98", or the factor of each load if they differ. */
 static void factors_text(const Case *c, PetscReal t, char *text, size_t size)
 {
+  const PetscInt n = case_acting_loads(c);
   PetscBool same = PETSC_TRUE;
   PetscReal first = weighs(c) ? case_factor(c, &c->gravity_amplitude, t) : case_factor(c, &c->loads[0].amplitude, t);
   char path[64];
   size_t used;
-  for (PetscInt k = 0; k < c->n_loads; ++k)
+  for (PetscInt k = 0; k < n; ++k)
     if (case_factor(c, &c->loads[k].amplitude, t) != first) same = PETSC_FALSE;
   if (same) {
     snprintf(text, size, "at load factor %.4g", (double)first);
@@ -62,7 +63,7 @@ static void factors_text(const Case *c, PetscReal t, char *text, size_t size)
   }
   used = (size_t)snprintf(text, size, "at factors");
   if (weighs(c)) used += (size_t)snprintf(text + used, size - used, " %.4g of gravity", (double)first);
-  for (PetscInt k = 0; k < c->n_loads && used < size; ++k)
+  for (PetscInt k = 0; k < n && used < size; ++k)
     used += (size_t)snprintf(text + used, size - used, "%s %.4g of %s", used > strlen("at factors") ? "," : "",
                              (double)case_factor(c, &c->loads[k].amplitude, t), case_load_path(c, k, path));
 }

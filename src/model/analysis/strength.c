@@ -81,7 +81,7 @@ static PetscBool any_moves(PetscInt n, const MotionSpec *motions)
 /* Is there anything that strength has to bear? What a stage or a run before has left counts, too. */
 static PetscBool is_loaded(const Case *c)
 {
-  PetscBool loaded = c->n_loads > 0 || case_has_stress(c) || c->initial.run || c->stage > 0;
+  PetscBool loaded = case_acting_loads(c) > 0 || case_has_stress(c) || c->initial.run || c->stage > 0;
   for (PetscInt d = 0; d < 3; ++d)
     if (c->gravity[d] != 0) loaded = PETSC_TRUE;
   for (PetscInt k = 0; k < c->n_walls; ++k)

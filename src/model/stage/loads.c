@@ -1,5 +1,6 @@
-/* Loads that the material carries, through stages that change some and drop others. Their carriers know the places
- * that the load had in the undeformed body, and no other: what is new has none, but on a body that comes with it. */
+/* Loads that the material carries, through stages that bring some, change some and drop others. Their carriers know
+ * the places that the load had in the undeformed body, and no other: those of a load that comes later go with the
+ * body from the start, and push nothing till then. */
 #include <string.h>
 #include "model/stage/stage_private.h"
 
@@ -90,33 +91,98 @@ static PetscBool is_zero(const LoadSpec *load) { return (PetscBool)(load->value[
 
 #define BESIDE 1e-9 /* of how far it is from the origin: a point that stands on the surface of its body */
 
-/* Does it begin with the body that it acts on? A point load acts on what is at its place. */
-static PetscBool comes_with_body(const Case *c, const Case *from, const LoadSpec *load)
+/* Does it act on the body? A point load acts on what is at its place. unknown: the answer where the case does not
+ * tell, of a side of the grid, and of a body without a shape. */
+static PetscBool acts_on(const LoadSpec *load, const BodySpec *body, PetscInt dim, PetscBool unknown)
 {
-  const PetscInt dim = kinematics_dim(c->kinematics);
   const PetscReal beside =
     BESIDE * (1 + PetscAbsReal(load->at[0]) + PetscAbsReal(load->at[1]) + PetscAbsReal(load->at[2]));
-  for (PetscInt b = 0; b < c->n_bodies; ++b) {
-    const BodySpec *body = &c->bodies[b];
-    if (body->absent || !body_comes(c, from, b)) continue;
-    if (load->on.body && !strcmp(body->name, load->on.body)) return PETSC_TRUE;
-    if (load->kind == LOAD_POINT && body->has_shape && shape_contains(&body->shape, dim, load->at, beside))
+  if (load->on.body) return (PetscBool)!strcmp(body->name, load->on.body);
+  if (load->kind != LOAD_POINT || !body->has_shape) return unknown;
+  return shape_contains(&body->shape, dim, load->at, beside);
+}
+
+/* Does it begin with a body that it acts on? */
+static PetscBool comes_with_body(const Case *c, const Case *from, const LoadSpec *load, PetscBool unknown)
+{
+  for (PetscInt b = 0; b < c->n_bodies; ++b)
+    if (!c->bodies[b].absent && body_comes(c, from, b) &&
+        acts_on(load, &c->bodies[b], kinematics_dim(c->kinematics), unknown))
       return PETSC_TRUE;
-  }
   return PETSC_FALSE;
+}
+
+/* Does the stage before tell where it acts, though it does not act there? Bodies that go from beside a side of the grid
+ * leave it another surface. */
+static PetscBool may_wait(const Case *c, const Case *before, const LoadSpec *load)
+{
+  const PetscBool on_side = (PetscBool)(!load->on.body && load->kind != LOAD_POINT);
+  for (PetscInt b = 0; b < before->n_bodies && on_side; ++b)
+    if (!before->bodies[b].absent && body_comes(before, c, b)) return PETSC_FALSE;
+  return (PetscBool)!comes_with_body(c, before, load, PETSC_TRUE);
+}
+
+/* Carriers of a load of 0 know no more of the surface that they stand for. */
+static PetscBool has_lost_surface(const LoadSpec *before, const LoadSpec *load)
+{
+  return (PetscBool)(load->kind != LOAD_POINT && is_zero(before) && !is_zero(load));
+}
+
+static LoadSpec waiting(const LoadSpec *load, PetscInt stage)
+{
+  static PetscReal never[1] = {0};
+  LoadSpec w = *load;
+  w.amplitude = (Amplitude){.n = 1, .time = never, .value = never};
+  w.factor = NULL;
+  w.waits = load->waits ? load->waits : stage;
+  return w;
+}
+
+PetscErrorCode LoadsWait(const Case *c, Case *before)
+{
+  const PetscInt n = before->n_loads;
+  PetscInt *now, *was;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(n, &now, c->n_loads, &was));
+  map_loads(c, before, now, was);
+  PetscCall(PetscRealloc((size_t)(n + c->n_loads) * sizeof *before->loads, &before->loads));
+  for (PetscInt k = 0; k < c->n_loads; ++k) {
+    const LoadSpec *load = c->loads + k;
+    const PetscBool goes_on = (PetscBool)(was[k] >= 0 && !has_lost_surface(before->loads + was[k], load));
+    if (goes_on || !is_carried(c, load) || !may_wait(c, before, load)) continue;
+    before->loads[before->n_loads++] = waiting(load, c->stage);
+  }
+  PetscCall(PetscFree2(now, was));
+  PetscFunctionReturn(0);
+}
+
+/* No carriers go on as its own, and none come with a body. */
+static void tell_no_carriers(const Case *c, PetscInt k, Diag *diag)
+{
+  const PetscInt waits = c->loads[k].waits;
+  char path[64], which[64] = "this load";
+  if (waits) snprintf(which, sizeof which, "a load of stage %d", (int)waits + 1);
+  if (c->stage == 0) {
+    diag_error(diag, waits ? "initial.run" : case_load_path(c, k, path),
+               "the material carries %s from its undeformed surface on, of which the run of `initial` knows nothing",
+               which);
+    diag_hint(diag, "let it stand in the case of that run, too: in a stage behind the state that is taken");
+  } else {
+    diag_error(diag, waits ? "bodies" : case_load_path(c, k, path),
+               "bodies come or go with this stage, and the case does not tell whether %s acts on them", which);
+    diag_hint(diag, "name the body that carries it: a traction or a pressure `on: {body: ...}`");
+  }
 }
 
 static void check_load(const Case *c, const Case *from, PetscInt k, const LoadSpec *before, Diag *diag)
 {
   const LoadSpec *load = c->loads + k;
   char path[64], key[96];
-  case_load_path(c, k, path);
-  if (!before && !comes_with_body(c, from, load)) {
-    diag_error(diag, path,
-               "a load that the material carries can begin only with the undeformed body, in the first stage");
-    diag_hint(diag, "give it there, with an amplitude that is 0 until it comes");
-  } else if (before && load->kind != LOAD_POINT && is_zero(before) && !is_zero(load)) {
-    snprintf(key, sizeof key, "%s.value", path);
+  if (!before && !comes_with_body(c, from, load, PETSC_FALSE)) {
+    tell_no_carriers(c, k, diag);
+  } else if (before && has_lost_surface(before, load)) {
+    snprintf(key, sizeof key, "%s.value", case_load_path(c, k, path));
     diag_error(diag, key,
                "it was 0 before, and the carriers of the load know no more of the surface that they stand for");
     diag_hint(diag, "give it a value there, with an amplitude that is 0");

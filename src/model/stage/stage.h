@@ -16,6 +16,9 @@ typedef struct {
 
 /* Which measures, walls and interfaces cannot come or go; next: with a stage, else with the state of another run. */
 PetscErrorCode RenameCheck(const Case *c, const Case *from, PetscBool next, Diag *diag);
+/* Loads of stage c that the material carries, and of which the stage before it knows nothing, wait in that: it gets
+ * them as further loads that do not act. From the last stage to the first. */
+PetscErrorCode LoadsWait(const Case *c, Case *before);
 /* Collective. Take the state of `from`, as tables, into a model that was just created. next: it goes on in
  * time, with its account of energies, measures and carried loads; else everything begins now. What
  * does not fit goes to diag. */

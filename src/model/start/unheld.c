@@ -321,7 +321,7 @@ static void note_free(Model *m, const UnheldGroup *g)
 PetscReal unheld_open_surface(const Model *m)
 {
   if (!case_load_follows(m->c) || m->contact) return OPEN;
-  for (PetscInt k = 0; k < m->c->n_loads; ++k) {
+  for (PetscInt k = 0; k < case_acting_loads(m->c); ++k) {
     const LoadSpec *load = &m->c->loads[k];
     const Selector *on = &load->on;
     if (load->kind != LOAD_PRESSURE) continue;

@@ -285,13 +285,16 @@ static PetscBool bears_where_loaded(const Model *m)
   return (PetscBool)(loads_have_pieces(m->loads) && !case_is_mixed(m->c));
 }
 
+/* One that is loaded now. */
+static PetscBool is_surface(const LoadSpec *load) { return (PetscBool)(load->kind != LOAD_POINT && !load->waits); }
+
 /* Of the carriers of surfaces: how far the farthest has come, in cells. */
 static PetscReal way_of_carriers(const Model *m)
 {
   const Points *carriers = m->loads->carriers;
   PetscReal most = 0;
   for (PetscInt p = 0; p < carriers->n; ++p)
-    for (PetscInt d = 0; d < m->dim && m->c->loads[carriers->body[p]].kind != LOAD_POINT; ++d)
+    for (PetscInt d = 0; d < m->dim && is_surface(m->c->loads + carriers->body[p]); ++d)
       most = PetscMax(most, PetscAbsReal(point_real(carriers, POINT_U, p)[d]) / m->grid->smallest);
   return most;
 }

@@ -83,6 +83,14 @@ static PetscErrorCode Begin(void *data, const NodalScene *scene)
   PetscFunctionReturn(0);
 }
 
+/* Those that wait for a later stage have to know their surface by then. */
+static PetscBool any_is_carried(const Loads *loads)
+{
+  for (PetscInt k = 0; k < loads->c->n_loads; ++k)
+    if (loads->c->loads[k].kind == LOAD_PRESSURE) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* The first acceleration comes before the first step. */
 static PetscErrorCode Create(const NodalScene *scene, Diag *diag, void **data)
 {
@@ -90,7 +98,7 @@ static PetscErrorCode Create(const NodalScene *scene, Diag *diag, void **data)
 
   (void)diag;
   PetscFunctionBeginUser;
-  if (!case_load_follows(scene->c)) PetscFunctionReturn(0);
+  if (!any_is_carried(scene->loads)) PetscFunctionReturn(0);
   PetscCall(PetscNew(&s));
   s->loads = scene->loads;
   s->hoop = scene->c->kinematics->hoop;

@@ -31,8 +31,10 @@ static const SchemaEntry stage_entries[] = {
           "likewise; walls that come later are `absent` at the top. A wall that is given anew begins where its shape "
           "is, not where its motion has brought it"),
   PART_OF("interfaces", "likewise, of another law; which bodies meet stays"),
-  PART_OF("loads",
-          "single keys; a list takes the place of the one before, named or not: what it leaves out acts no more"),
+  PART_OF(
+    "loads",
+    "single keys; a list takes the place of the one before, named or not: what it leaves out acts no more. A load "
+    "on a body that is there acts on the surface that this had undeformed, wherever that has moved"),
   PART_OF("measures",
           "entries take the place of those of their name, or come behind them; NAME: {absent: true} drops one. Cells "
           "of history.csv are empty where a measure is not there"),

@@ -6,7 +6,8 @@ static PetscBool is_zero(const PetscReal v[3]) { return (PetscBool)(v[0] == 0 &&
 static PetscBool something_acts(const Model *m)
 {
   const Case *c = m->c;
-  PetscBool acts = (PetscBool)(m->body_force || c->stage > 0 || c->initial.run || c->n_loads || !is_zero(c->gravity));
+  PetscBool acts = (PetscBool)(m->body_force || c->stage > 0 || c->initial.run || case_acting_loads(c) > 0);
+  acts |= !is_zero(c->gravity);
   for (PetscInt k = 0; k < c->n_boundary; ++k) acts |= c->boundary[k].kind != MOTION_FIXED;
   for (PetscInt k = 0; k < c->n_walls; ++k) acts |= c->walls[k].n_motions || c->walls[k].has_mass;
   for (PetscInt k = 0; k < c->n_materials; ++k) acts |= c->materials[k].n_amplitudes > 0;
