@@ -178,9 +178,9 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
   PetscFunctionBeginUser;
   if (!m->contact) PetscFunctionReturn(0);
   contact_again(m->contact);
-  /* no time passes where an equilibrium is sought: walls stand still */
   ContactShare share = share_of_force(m);
   share.leaves = left_deep(m, dt);
+  /* no time passes where an equilibrium is sought: walls stand still */
   contact_prepare(m->contact, m->time, m->initial.seeking ? 0 : dt, inertia, share);
   for (RigidWall *b = m->contact->rigid; b < m->contact->rigid + m->contact->n_rigid; ++b)
     rigid_begin(b, m->walls, m->c, m->time, dt, share_of_force(m).mean, m->scheme->middle);
