@@ -4,6 +4,8 @@
 #include "run/strength/strength.h"
 
 #define ALL_DISSIPATED 0.99
+#define QUICKENS 5 /* what fails goes so many times as far for what it loses as it did before, */
+#define NEARLY_SLIDES (0.1 * STRENGTH_SLIDES) /* and at least so far, of its height for the share that it loses */
 
 static const char unfinished[] = "the search was ended before it was over";
 
@@ -76,6 +78,26 @@ static PetscBool slid(const StrengthRun *s)
   return PETSC_FALSE;
 }
 
+/* How far the body goes, of its height, for what share of its strength it loses, in a try that stands. */
+static PetscReal pace(const StrengthRun *s, PetscInt i)
+{
+  const Try *before = &s->tries[strength_stood_before(s, i)], *now = &s->tries[i];
+  const PetscReal share = strength_share(now->factor - before->factor, now->factor);
+  return (now->displacement - before->displacement) / (s->height * share);
+}
+
+/* Did the body go ever faster, and with the smallest factor that fails run away? */
+static PetscBool ran(const StrengthRun *s)
+{
+  PetscReal slowest = PETSC_MAX_REAL, last = 0;
+  PetscBool runs = PETSC_FALSE;
+  for (PetscInt i = 1; i < s->n; ++i) {
+    if (stands(s, i)) last = pace(s, i), slowest = PetscMin(slowest, last);
+    if (s->tries[i].factor == s->search.failed) runs = s->tries[i].outcome == TRY_RUNS;
+  }
+  return (PetscBool)(runs && last > PetscMax(NEARLY_SLIDES, QUICKENS * slowest));
+}
+
 /* Newton's method gave up where nothing ran away or slid, and what stood before neither moved as if it were to slide
  * nor dissipated all work. What is lost by itself may run away, or move, in the smallest of steps. */
 static PetscBool is_doubtful(const StrengthRun *s)
@@ -86,10 +108,10 @@ static PetscBool is_doubtful(const StrengthRun *s)
     if (s->tries[i].outcome == TRY_LOST && s->tries[i].factor >= s->search.failed) lost = PETSC_TRUE;
     if (stands(s, i)) flows = stores_nothing(s, i);
   }
-  if (!lost || last == 0 || slid(s)) return PETSC_FALSE;
+  if (!lost || last == 0 || slid(s) || ran(s)) return PETSC_FALSE;
   const PetscInt before = strength_stood_before(s, last);
   const PetscReal taken = strength_share(s->tries[last].factor - s->tries[before].factor, s->tries[last].factor);
-  return (PetscBool)(!flows || s->tries[last].moved < 0.1 * STRENGTH_SLIDES * s->height * taken);
+  return (PetscBool)(!flows || s->tries[last].moved < NEARLY_SLIDES * s->height * taken);
 }
 
 static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *dir)
