@@ -302,4 +302,68 @@ for way in fem mpm gmm; do
   done
 done
 
+# What is held cannot follow a wall: against a side whose foot stands it does to all that is free what prescribed nodes
+# above the foot do, and as much work, in one step or in four (they went five times as far, with five to nine times the
+# force); besides it bears a part of the pressure on the foot's own row, a tenth of the force here. As it goes back
+# nothing is left.
+cat >foot.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, end: 1, steps: 4}
+grid: {box: {min: [0, 0], max: [2, 1]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [2, 1]}}, points_per_cell: 4, material: m}]
+materials: {m: {law: neo-hookean, density: 2000, young: 1e8, poisson: 0.3}}
+boundary: [{on: {y: 0}, fix: [x, y]}, {name: far, on: {x: 2}, fix: [x]}]
+walls: [{name: w, shape: {half-space: {point: [0, 0], normal: [1, 0]}}, motion: [{displacement: {x: 1e-4}}]}]
+measures: {force: {wall_force: x, of: {wall: w}}, far: {reaction: x, of: {boundary: far}}, work: {energy: external}, transfer: {energy: transfer}}
+output: {fields: [displacement], every: end}
+END
+back='walls[0].motion=[{displacement: {x: 1e-4}, amplitude: [[0, 0], [0.5, 1], [1, 0]]}]'
+space='boundary=[{on: {z: 0}, fix: [x, y, z]}, {name: far, on: {x: 2}, fix: [x]}, {on: {y: 0}, fix: [y]}, {on: {y: 0.25}, fix: [y]}]'
+pushed() {
+  sed -e '/^walls/d; s/wall_force: x, of: {wall: w}/reaction: x, of: {boundary: push}/' \
+    -e "s/boundary: \[/&{name: push, on: {x: 0, $1: [0.01, 1]}, displacement: {x: 1e-4}}, /" "$2"
+}
+sed -e 's/plane-strain/3d/; s/min: \[0, 0\], max: \[2, 1\]/min: [0, 0, 0], max: [2, 0.25, 1]/g; s/_cell: 4/_cell: 8/' \
+  -e "s/^boundary.*/$(echo "$space" | sed 's/=/: /')/; s/point: \[0, 0\], normal: \[1, 0\]/point: [0, 0, 0], normal: [1, 0, 0]/" foot.yaml >space.yaml
+pushed y foot.yaml >pushed.yaml
+pushed z space.yaml >pushed_space.yaml
+for way in "fem 1 pushed foot" "fem 4 pushed foot" "mpm 4 pushed foot" "gmm 1 pushed foot" "fem 1 pushed_space space"; do
+  set -- $way
+  turn
+  box=output.every=end
+  [ $1 = mpm ] && box='grid.box={min: [-0.5, 0], max: [2, 1.5]}'
+  expect "pushed nodes, $way" 0 "$talus" run $3.yaml --out pushed --force --quiet --set method=$1 --set analysis.steps=1 --set "$box"
+  expect "a foot that stands, $way, on $ranks" 0 on_ranks $ranks "$talus" run $4.yaml --out foot --force --quiet --set method=$1 --set analysis.steps=$2 --set "$box"
+  awk -F, 'NR == FNR { f = $3; a = $4; w = $5; next } { F = $3; A = $4; W = $5; T = $6 }
+    END { exit !((A / a - 1) ^ 2 < 2e-4 ^ 2 && (W / w - 1) ^ 2 < 2e-3 ^ 2 && F > f && F < 1.2 * f && (T / W) ^ 2 < 2e-3 ^ 2) }' pushed/history.csv foot/history.csv ||
+    fail "$name: $(tail -n 1 foot/history.csv), not $(tail -n 1 pushed/history.csv)"
+done
+for method in fem mpm gmm; do
+  turn
+  box=output.every=end
+  [ $method = mpm ] && box='grid.box={min: [-0.5, 0], max: [2, 1.5]}'
+  expect "there and back, $method, on $ranks" 0 on_ranks $ranks "$talus" run foot.yaml --out foot --force --quiet --set method=$method --set "$box" --set "$back"
+  awk -F, 'NR > 1 && $3 > most { most = $3 } { last = $3 } END { exit !(most > 10000 && last < 2e-3 * most && last > -2e-3 * most) }' foot/history.csv || fail "$name: $(cat foot/history.csv)"
+done
+# Of a wall that sticks and goes along itself as well: the side is a foot of its upper face.
+for kind in stick bonded; do
+  expect "a lid beside a side that stands, $kind" 0 "$talus" run foot.yaml --out foot --force --quiet --set "walls=[{name: w, shape: {half-space: {point: [0, 1], normal: [0, -1]}}, contact: $kind, motion: [{displacement: {x: 1e-4, y: -1e-4}}]}]" \
+    --set 'boundary=[{on: {y: 0}, fix: [x, y]}, {name: far, on: {x: 0}, fix: [x, y]}]'
+  expect "nodes of a lid, $kind" 0 "$talus" run pushed.yaml --out pushed --force --quiet \
+    --set 'boundary=[{name: push, on: {y: 1, x: [0.01, 2]}, displacement: {x: 1e-4, y: -1e-4}}, {on: {y: 0}, fix: [x, y]}, {name: far, on: {x: 0}, fix: [x, y]}]'
+  awk -F, 'NR == FNR { f = $3; next } { F = $3 } END { exit !(F > f && F < 1.2 * f) }' pushed/history.csv foot/history.csv ||
+    fail "$name: $(tail -n 1 foot/history.csv), not $(tail -n 1 pushed/history.csv)"
+done
+# In dynamics it gives no more energy than the nodes get; what it has passed stays in checkpoints.
+moves='walls[0].motion=[{velocity: {x: 0.01}}]'
+expect "pushed nodes in dynamics" 0 "$talus" run pushed.yaml --out pushed --force --quiet --set 'analysis={type: dynamic, step: 2e-3, end: 0.04}' --set boundary[0].displacement.x=4e-4 --set 'boundary[0].amplitude=[[0, 0], [0.04, 1]]'
+expect "a foot in dynamics" 0 "$talus" run foot.yaml --out foot --force --quiet --set 'analysis={type: dynamic, step: 2e-3, end: 0.04}' --set "$moves" --set checkpoint.steps=11 --set checkpoint.keep=9
+awk -F, 'NR == FNR { w = $5; next } { W = $5; T = $6 } END { exit !((W / w - 1) ^ 2 < 2e-3 ^ 2 && (T / W) ^ 2 < 2e-3 ^ 2) }' pushed/history.csv foot/history.csv ||
+  fail "$name: $(tail -n 1 foot/history.csv), not $(tail -n 1 pushed/history.csv)"
+cp -r foot cut
+rm cut/checkpoint_0000000[12][02-9].h5 cut/timings.txt
+expect "a foot, resumed" 0 "$talus" run --resume cut --quiet
+cmp -s foot/history.csv cut/history.csv || fail "$name: another history"
+
 finish

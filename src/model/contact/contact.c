@@ -182,6 +182,7 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
   share.leaves = left_deep(m, dt);
   /* no time passes where an equilibrium is sought: walls stand still */
   contact_prepare(m->contact, m->time, m->initial.seeking ? 0 : dt, inertia, share);
+  contact_find_held(m->contact, m->boundary->fixed, m->nodes->prescribed, &m->boundary->frames);
   for (RigidWall *b = m->contact->rigid; b < m->contact->rigid + m->contact->n_rigid; ++b)
     rigid_begin(b, m->walls, m->c, m->time, dt, share_of_force(m).mean, m->scheme->middle);
   if (!contact_holds(m)) PetscFunctionReturn(0);
@@ -240,28 +241,39 @@ static void passing(const Model *m, const ContactPoint *c, PetscReal dt, const P
   wall_motion(s->walls, c->wall, m->time, m->time + dt, start, passes);
 }
 
+/* What of the way of a wall that goes as it is told does no work: that by which it passes held nodes, where the
+ * boundary bears its force. Along a wall that rubs they slide. */
+static void idling(const Model *m, const ContactPoint *c, PetscReal idle[3])
+{
+  const PetscBool told = (PetscBool)!contact_rigid(m->contact, c);
+  for (int d = 0; d < 3; ++d)
+    idle[d] = !told ? 0 : rubs(c->law.kind) ? (c->passed - c->behind) * c->facing[d] : c->let[d];
+}
+
 /* Of the mean force in the step. */
 static ContactWork point_work(const Model *m, const ContactPoint *c, PetscReal dt)
 {
   const PetscReal end = m->scheme->inertia ? share_of_force(m).mean : 0.5, first = m->scheme->inertia ? 0 : 0.5;
-  PetscReal f[3], balance[3], x[3], passes[3], pressure = 0, closing = 0;
+  PetscReal f[3], balance[3], x[3], passes[3], idle[3], way[3], pressure = 0, closing = 0;
   ContactWork work = {0};
   contact_acts(c, f);
   contact_balance(m->contact, c, balance);
   contact_place(m->contact, c, m->nodes->du, 1, x);
   passing(m, c, dt, x, passes);
+  idling(m, c, idle);
   for (int d = 0; d < 3; ++d) {
     f[d] = first * c->last[d] + end * f[d];
     pressure += f[d] * c->normal[d];
-    closing += (x[d] - c->x[d] - c->swept[d]) * c->normal[d];
+    way[d] = x[d] - c->x[d] - c->swept[d] + idle[d];
+    closing += way[d] * c->normal[d];
   }
   for (int d = 0; d < 3; ++d) {
     const PetscReal start = c->stays * c->last[d];
     work.start += 0.5 * start * (x[d] - c->x[d]);
     work.more += (f[d] - 0.5 * (start + balance[d])) * (x[d] - c->x[d]);
-    work.moving += f[d] * passes[d];
+    work.moving += f[d] * (passes[d] - idle[d]);
     work.closing += f[d] * (c->swept[d] - passes[d]);
-    work.sliding -= (f[d] - pressure * c->normal[d]) * (x[d] - c->x[d] - c->swept[d]);
+    work.sliding -= (f[d] - pressure * c->normal[d]) * way[d];
   }
   work.closing += pressure * closing;
   if (!rubs(c->law.kind)) { /* along a wall that does not rub only a force does work that had another normal before */

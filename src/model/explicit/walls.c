@@ -202,6 +202,7 @@ void walls_follow(Model *m, Explicit *e)
     kept[KEPT_REACH] = PetscMax(THINNEST * first, PetscMin(contact_farthest(m->points, c->owner), c->reach - lead));
     keep(m, e, c, move, kept + KEPT_FORCE);
     kept[KEPT_STAYS(m->dim)] = 1;
+    kept[KEPT_PASSED(m->dim)] = c->behind;
     contact_keep_normal(kept, m->dim, s->sides, c->normal);
   }
   heavy_go(m);

@@ -6,7 +6,7 @@
 #pragma once
 #include "base/table/table.h"
 
-#define CHECKPOINT_VERSION 9
+#define CHECKPOINT_VERSION 10
 
 /* Collective. Written whole or not at all, and on the disk when this returns. PETSC_ERR_FILE_WRITE
  * on every rank with a reason if the file system refuses. */

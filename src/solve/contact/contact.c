@@ -199,6 +199,7 @@ static PetscErrorCode Commit(void *data, const NodalScene *scene)
     kept[KEPT_STAYS(dim)] = contact_stays(s, c);
     kept[KEPT_LEAPT(dim)] = c->leapt;
     kept[KEPT_TAKES(dim)] = share_taken_back(s, c);
+    kept[KEPT_PASSED(dim)] = c->passed;
     contact_keep_normal(kept, dim, s->sides, c->normal);
   }
   PetscFunctionReturn(0);

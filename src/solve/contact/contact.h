@@ -16,6 +16,12 @@
 #include "solve/contact/rigid.h"
 #include "solve/forces/nodal_force.h"
 
+/* Of the functions of a contact point the share of nodes that are held along the normal, and that of nodes held in all
+ * directions; and what these are moved by along the normal, and at all, times their functions, m. */
+typedef struct {
+  PetscReal along, all, led, towed[3];
+} ContactHeld;
+
 typedef struct {
   PetscInt owner; /* the material point, or the node */
   PetscInt wall;  /* or the number of walls + the interface */
@@ -37,10 +43,13 @@ typedef struct {
   PetscReal cover;     /* the share of it that the other body stands before; 1: a wall */
   /* of its material, and of that of the other body (0: a wall), Pa, kg/m3 */
   PetscReal modulus[2], density[2];
-  PetscReal stiffer;  /* by so much does it oppose a change of volume more than `modulus` says */
-  PetscReal open;     /* gap at the start of the step, m */
-  PetscReal own_bond; /* that the wall bears along itself without pressure, N, */
-  PetscReal bond;     /* with what others lend it: ContactLend */
+  PetscReal stiffer; /* by so much does it oppose a change of volume more than `modulus` says */
+  PetscReal open;    /* gap at the start of the step, m */
+  ContactHeld held;
+  PetscReal behind, passed; /* by how much the wall has passed it before the step and at the last assembly, m, */
+  PetscReal let[3];         /* and what of `swept` held nodes let pass */
+  PetscReal own_bond;       /* that the wall bears along itself without pressure, N, */
+  PetscReal bond;           /* with what others lend it: ContactLend */
   ContactLaw law;
   PetscReal stiffest; /* penalty, N/m */
   PetscReal borne;    /* explicit dynamics: the share of its spring that the substep bears */
@@ -141,6 +150,13 @@ PetscErrorCode ContactDestroy(Contact **contact);
 PetscErrorCode ContactFind(Contact *contact, const NodalScene *scene);
 /* Before the solve of a step of dt: penalties, and how walls move. inertia: see WeakFormInput. */
 void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia, ContactShare share);
+/* contact_held.c. Then: what cannot follow a wall. Flags in the frames of nodes, increments of the step, m. */
+void contact_find_held(Contact *contact, const unsigned char *fixed, const PetscReal *prescribed, const Frames *frames);
+/* Where the wall's matter goes by `way`, by how much it has passed the point at the end of the step, m; let: what of
+ * that way held nodes let pass. */
+PetscReal contact_let_pass(const ContactPoint *c, const PetscReal way[3], PetscReal let[3]);
+/* By what `let` changes with a motion more of the wall's matter. */
+void contact_lets(const ContactPoint *c, const PetscReal motion[3], PetscReal let[3]);
 /* Forget what impulses have done in a step, or in a try of it that has failed: a try begins. */
 void contact_again(Contact *contact);
 /* How far the surface is from point p at a distance `gap` from the wall, as the last step has left it, m: a spring of

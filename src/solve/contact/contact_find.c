@@ -259,13 +259,14 @@ static PetscErrorCode MeetSide(Contact *s, const NodalScene *scene, PetscInt g, 
   contact_take_law(s, scene, c);
   contact_remember(c, dim, kept, place.normal);
   c->edge = is_edge(&place);
-  place.gap -= reach;
+  place.gap += kept[KEPT_PASSED(dim)] - reach;
   if (contact_passes(s, c, place.gap, scene->first)) {
     --s->n;
     PetscFunctionReturn(0);
   }
   c->gone = !wall_comes(s->walls, k, scene->t);
   c->open = place.gap;
+  c->behind = kept[KEPT_PASSED(dim)];
   c->touches = c->touches && !c->gone;
   PetscCall(ContactAddNodes(s, c, nn));
   for (PetscInt d = 0; d < dim; ++d) c->x[d] = x[d] - reach * place.normal[d];
@@ -299,7 +300,7 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
     PetscCall(MeetSide(s, scene, g, at, k, place[i], slot[i], kept[i], &c));
     if (!c) continue;
     c->side = side;
-    place[i].gap = c->open;
+    place[i].gap = c->open - c->behind;
     if (n > 1) PetscCall(ContactAnchor(s, scene, &place[i], c));
   }
   PetscFunctionReturn(0);

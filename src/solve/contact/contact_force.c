@@ -22,7 +22,7 @@ PetscReal contact_went(const Contact *s, const ContactPoint *c, const PetscReal 
 {
   PetscReal way[3], square = 0;
   take_way(s, c, du, 1, way);
-  for (int d = 0; d < 3; ++d) square += PetscSqr(way[d] - c->swept[d]);
+  for (int d = 0; d < 3; ++d) square += PetscSqr(way[d] - c->swept[d] + c->let[d]);
   return PetscSqrtReal(square);
 }
 
@@ -92,9 +92,11 @@ PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *sce
   for (int d = 0; d < 3 && rigid; ++d) c->passes[d] = c->swept[d];
   stay_open(c);
   c->ahead = c->reach;
+  if (rigid) c->passed = contact_let_pass(c, c->swept, c->let); /* of others it is known */
   if (!place_of(s, c, scene->end, x, way, &place)) return PETSC_FALSE;
-  for (int d = 0; d < 3; ++d) c->slip[d] = way[d] - c->swept[d], c->normal[d] = place.normal[d];
-  place.gap += s->share.leaves * PetscMax(0, -c->open);
+  place.gap += c->passed;
+  place.gap += s->share.leaves * PetscMax(0, -(c->open + c->passed));
+  for (int d = 0; d < 3; ++d) c->slip[d] = way[d] - c->swept[d] + c->let[d], c->normal[d] = place.normal[d];
   c->gap = place.gap;
   c->law.grips = (PetscBool)(s->grips && contact_touched(c));
   c->state = contact_law(&c->law, &place, c->slip, &c->multiplier, &c->now, K);

@@ -1,7 +1,8 @@
 /* What a carrier keeps of its contacts from step to step (POINT_CONTACT): for each partner, a wall or an interface, so
  * many sides as may meet it at once; of each the state, its reach, m, the force of the last step, N, how much of that
- * stays, what of the reach has come by leaps of the gap, m, and the share of this that the last step's sliding takes
- * back. Where there may be more than one side, each is known by its normal. */
+ * stays, what of the reach has come by leaps of the gap, m, the share of this that the last step's sliding takes back,
+ * and by how much held nodes have let the wall pass it, m. Where there may be more than one side, each is known by its
+ * normal. */
 #pragma once
 #include "points/points.h"
 #include "wall/wall.h"
@@ -12,7 +13,8 @@
 #define KEPT_STAYS(dim) (2 + (dim))
 #define KEPT_LEAPT(dim) (3 + (dim))
 #define KEPT_TAKES(dim) (4 + (dim))
-#define KEPT_NORMAL(dim) (5 + (dim)) /* dim numbers, where partners may have several sides */
+#define KEPT_PASSED(dim) (5 + (dim))
+#define KEPT_NORMAL(dim) (6 + (dim)) /* dim numbers, where partners may have several sides */
 
 /* How many sides of any partner may meet one carrier. */
 static inline PetscInt contact_sides(const Case *c)
@@ -23,7 +25,7 @@ static inline PetscInt contact_sides(const Case *c)
 }
 
 /* Numbers of one side, and of a partner with so many. */
-static inline PetscInt contact_kept_side(PetscInt dim, PetscInt sides) { return 5 + dim + (sides > 1 ? dim : 0); }
+static inline PetscInt contact_kept_side(PetscInt dim, PetscInt sides) { return 6 + dim + (sides > 1 ? dim : 0); }
 static inline PetscInt contact_kept_partner(PetscInt dim, PetscInt sides)
 {
   return sides * contact_kept_side(dim, sides);

@@ -71,13 +71,15 @@ static PetscBool touch_of(const Contact *s, ContactPoint *c, const RigidWall *b,
   rigid_arm(b, PETSC_FALSE, x, at);
   rigid_lever(b, c->x, x, lever);
   for (int i = 0; i < RIGID; ++i) {
-    PetscReal axis[3] = {0, 0, 0};
+    PetscReal axis[3] = {0, 0, 0}, let[3], counts[3];
     if (i > 2) rigid_turns(b, i - 3, axis);
     vector_cross(axis, at, t->motion[i]);
     if (i < 3) t->motion[i][i] = 1;
     motion_of(i, lever, t->arm[i]);
     vector_cross(axis, t->f, t->change[i]); /* the force turns with its wall */
-    for (int d = 0; d < 3; ++d) t->change[i][d] += vector_dot(t->K + 3 * d, t->motion[i]);
+    contact_lets(c, t->motion[i], let);
+    for (int d = 0; d < 3; ++d) counts[d] = t->motion[i][d] - let[d];
+    for (int d = 0; d < 3; ++d) t->change[i][d] += vector_dot(t->K + 3 * d, counts);
   }
   return PETSC_TRUE;
 }

@@ -11,14 +11,18 @@
 
 #define MOST_LET_GO 8 /* times that points are let go that would pull */
 
-/* Velocity of the wall there, now. */
+/* Velocity of the wall there, now, as far as it does not pass nodes that are held. */
 static void wall_velocity(const Projection *w, PetscInt k, PetscReal v[3])
 {
   const ContactPoint *c = w->s->point + k;
   const RigidWall *b = contact_rigid(w->s, c);
+  PetscReal way[3], let[3];
   if (b) rigid_velocity(b, w->arm + 3 * k, v);
   else
     for (int d = 0; d < 3; ++d) v[d] = w->m->rate * c->swept[d];
+  for (int d = 0; d < 3; ++d) way[d] = v[d] / w->m->rate;
+  (void)contact_let_pass(c, way, let);
+  for (int d = 0; d < 3; ++d) v[d] -= w->m->rate * let[d];
 }
 
 /* Walls that do not pull let go what would have to be held back. */
@@ -152,7 +156,7 @@ static PetscReal driven(const Projection *w)
   for (PetscInt j = 0; j < w->n_held; ++j) {
     const ContactPoint *c = w->s->point + w->list[j];
     if (c->wall >= w->s->n_walls || contact_rigid(w->s, c)) continue;
-    sum += w->m->rate * impulse_dot(3, c->passes, w->p + 3 * w->list[j]);
+    for (int d = 0; d < 3; ++d) sum += w->m->rate * (c->passes[d] - c->let[d]) * w->p[3 * w->list[j] + d];
   }
   return sum;
 }
