@@ -348,6 +348,7 @@ static PetscErrorCode NewModel(MPI_Comm comm, const Case *c, Model **model)
   (*model)->comm = comm;
   (*model)->c = c;
   (*model)->dim = kinematics_dim(c->kinematics);
+  (*model)->initial = (InitialState){.lacked = NAN, .left = NAN, .moved = NAN};
   (*model)->time = c->start; /* what a stage moves stands where it begins then */
   PetscFunctionReturn(0);
 }

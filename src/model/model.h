@@ -125,10 +125,10 @@ typedef struct {
 
 /* What the state before the first step was like (start/). All of it is real, counts too. */
 typedef struct {
-  PetscReal beyond;               /* points whose given stress was more than their strength allows */
-  PetscReal lacked;               /* norm of forces out of balance over that of the weight, as given */
-  PetscReal left;                 /* the same in the equilibrium */
-  PetscReal moved;                /* largest displacement on the way there, m */
+  PetscReal beyond; /* points whose given stress was more than their strength allows */
+  PetscReal lacked; /* norm of forces out of balance over that of the weight, as given; nan: nobody looked */
+  /* the same in the equilibrium, and the largest displacement on the way there, m; nan: none was sought */
+  PetscReal left, moved;
   PetscReal parts, elastic_parts; /* in which it was taken away; of these before anything could yield */
   PetscReal iterations;
   PetscReal share;   /* of what is lacking that the present step takes away */

@@ -70,6 +70,10 @@ void stress_tell_none(const Case *c, PetscInt b, const Law *law, Diag *diag);
 void equilibrium_check(const Model *model, Diag *diag);
 /* Does everything stay where it is, and only stresses change? */
 PetscBool equilibrium_stays(const Model *model);
+/* Collective. Forces out of balance at dofs that are not fixed over what acts there, `weight` (N) at least; where nothing
+ * does, over what holds the others. force: less the external ones, n_nodes x dim, owners count. */
+PetscErrorCode LackOfBalance(const Model *model, const unsigned char *fixed, const PetscReal *force, PetscReal weight,
+                             PetscReal *lack);
 /* Collective. While it is sought: how much is lacking, and forces that hold what is to be taken away later. */
 PetscErrorCode EquilibriumPrepare(Model *model, StepProblem *problem);
 /* Acceleration now from the balance of momentum with lumped mass, so that a body in free fall
@@ -365,3 +369,6 @@ void mark_fixed(Model *model);
 /* Collective. History, prescribed increments and loads for a step of dt; the first guess is to be
  * made. */
 PetscErrorCode PrepareStep(Model *model, PetscReal dt, StepProblem *problem);
+/* Collective. Norms over nodes that material touches: gravity g, the inertia force of stopping within a step of dt, and
+ * that of the motion at its start. */
+PetscErrorCode ForceScales(const Model *model, const PetscReal *g, PetscReal dt, StepProblem *problem);

@@ -5,6 +5,9 @@
 /* of the weight: what increments too small to count may leave */
 #define ROUND_OFF 1e-6
 
+/* of the weight: what quadrature among the functions of a cloud leaves of a stress that balances */
+#define OF_CLOUDS 1e-2
+
 /* of the weight: no stress at all lacks 1 */
 #define MORE_THAN_NONE 1.05
 
@@ -42,6 +45,25 @@ static PetscErrorCode TellLack(const Run *r, PetscReal lacked)
   PetscFunctionReturn(0);
 }
 
+/* A method that cannot seek one says so where statics will move the body; others were told not to. */
+static PetscErrorCode TellNone(const Run *r)
+{
+  const PetscReal lacked = r->model->initial.lacked; /* nan: not known where constraints hold a cloud */
+  const PetscBool moves = (PetscBool) !(lacked <= ROUND_OFF), unasked = r->model->method->clouds;
+  const PetscBool warns = (PetscBool)(unasked && case_is_static(&r->c->analysis) && !(lacked <= OF_CLOUDS));
+  char what[80] = "what is out of balance";
+
+  PetscFunctionBeginUser;
+  if (!case_has_stress(r->c)) PetscFunctionReturn(0);
+  if (!PetscIsNanReal(lacked))
+    snprintf(what, sizeof what, "%.3g of the weight is out of balance%s", (double)lacked, moves ? " and" : "");
+  PetscCall(RunDirLog(
+    r->dir, "%s: %s%s",
+    warns ? "warning = this method seeks no equilibrium before the first step" : "initial equilibrium = none is sought",
+    what, moves ? " moves the body from there on" : ""));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode RunEquilibrate(Run *r)
 {
   Model *m = r->model;
@@ -51,7 +73,10 @@ PetscErrorCode RunEquilibrate(Run *r)
 
   PetscFunctionBeginUser;
   if (case_has_stress(r->c)) PetscCall(TellStress(m, r->dir));
-  if (r->c->initial.equilibrium <= EQUILIBRIUM_NONE) PetscFunctionReturn(0);
+  if (r->c->initial.equilibrium <= EQUILIBRIUM_NONE) {
+    PetscCall(TellNone(r));
+    PetscFunctionReturn(0);
+  }
   PetscCall(ModelEquilibrate(m, &report));
   if (report.outcome == STEP_ACCEPTED) {
     PetscCall(RunDirLog(r->dir,

@@ -2,10 +2,12 @@
 #include "model/measure/measure.h"
 
 static const MeasureNumber *const words[] = {
-  WORD("lacked", "norm of the forces out of balance as given, over that of the weight", "", OF_MODEL,
-       .kept = offsetof(Model, initial.lacked)),
-  WORD("left", "the same in the equilibrium", "", OF_MODEL, .kept = offsetof(Model, initial.left)),
-  WORD("moved", "largest displacement on the way there", "m", OF_MODEL, .kept = offsetof(Model, initial.moved)),
+  WORD("lacked", "norm of the forces out of balance as given, over that of the weight; nan without a given stress", "",
+       OF_MODEL, .kept = offsetof(Model, initial.lacked)),
+  WORD("left", "the same in the equilibrium; nan where none was sought", "", OF_MODEL,
+       .kept = offsetof(Model, initial.left)),
+  WORD("moved", "largest displacement on the way there, likewise", "m", OF_MODEL,
+       .kept = offsetof(Model, initial.moved)),
   WORD("beyond", "points whose given stress was beyond their strength", "", OF_MODEL,
        .kept = offsetof(Model, initial.beyond)),
   NULL,

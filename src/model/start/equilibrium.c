@@ -9,10 +9,26 @@
  * that have moved give other nodes what they bear */
 #define WORTH 0.5
 
+PetscErrorCode LackOfBalance(const Model *m, const unsigned char *fixed, const PetscReal *force, PetscReal weight,
+                             PetscReal *lack)
+{
+  const PetscReal *external = m->nodes->external;
+  PetscReal local[3] = {0, 0, 0}, sum[3];
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
+    local[fixed[i] ? 2 : 0] += force[i] * force[i];
+    if (!fixed[i]) local[1] += external[i] * external[i];
+  }
+  PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, m->comm));
+  const PetscReal acts = PetscMax(weight, PetscSqrtReal(sum[1])), scale = acts > 0 ? acts : PetscSqrtReal(sum[2]);
+  *lack = scale > 0 ? PetscSqrtReal(sum[0]) / scale : 0;
+  PetscFunctionReturn(0);
+}
+
 /* What forces lack at nodes that are free, before anything moves: n_nodes x dim, owners count. */
 static PetscErrorCode Lack(Model *m, StepProblem *p, PetscReal *force, PetscReal *lack)
 {
-  PetscReal local[3] = {0, 0, 0}, sum[3];
   WeakFormOutput out = {.force = force};
   const NodalOutput acting = {.force = force};
 
@@ -22,14 +38,8 @@ static PetscErrorCode Lack(Model *m, StepProblem *p, PetscReal *force, PetscReal
   PetscCall(NodalForcesAssemble(p->forces, &p->scene, &acting));
   PetscCall(GridSumToOwners(m->grid, m->dim, force));
   frames_turn(&m->boundary->frames, m->dim, force);
-  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
-    force[i] -= p->external[i];
-    local[p->fixed[i] ? 2 : 0] += force[i] * force[i];
-    if (!p->fixed[i]) local[1] += p->external[i] * p->external[i];
-  }
-  PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, m->comm));
-  const PetscReal acts = PetscMax(p->weight, PetscSqrtReal(sum[1])), scale = acts > 0 ? acts : PetscSqrtReal(sum[2]);
-  *lack = scale > 0 ? PetscSqrtReal(sum[0]) / scale : 0;
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) force[i] -= p->external[i];
+  PetscCall(LackOfBalance(m, p->fixed, force, p->weight, lack));
   PetscFunctionReturn(0);
 }
 
@@ -165,6 +175,7 @@ PetscErrorCode ModelEquilibrate(Model *m, StepReport *report)
   if (m->c->initial.equilibrium <= EQUILIBRIUM_NONE) PetscFunctionReturn(0);
   m->scheme = time_scheme_of(&(AnalysisSpec){.type = ANALYSIS_STATIC});
   m->initial.seeking = PETSC_TRUE;
+  m->initial.moved = 0;
   if (m->c->initial.equilibrium == EQUILIBRIUM_ELASTIC_FIRST) {
     PetscCall(SettleElastic(m, &m->initial.lacked, report));
     m->initial.elastic_parts = m->initial.parts;

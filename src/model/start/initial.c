@@ -90,6 +90,25 @@ static PetscErrorCode Unbalanced(Model *m, PetscBool goes_on)
   PetscFunctionReturn(0);
 }
 
+/* What the given stress lacks of balance where nobody seeks it. Constraints of a cloud bear what would count as such. */
+static PetscErrorCode TellLack(Model *m)
+{
+  const Case *c = m->c;
+  const PetscBool given = (PetscBool)(c->stage == 0 && !c->initial.run && case_has_stress(c));
+  PetscInt constrained = 0;
+  StepProblem p;
+
+  PetscFunctionBeginUser;
+  if (!given || case_equilibrates(c)) PetscFunctionReturn(0);
+  PetscCall(MPIU_Allreduce(&m->space->constraints->n, &constrained, 1, MPIU_INT, MPI_SUM, m->comm));
+  if (constrained) PetscFunctionReturn(0);
+  gravity_at(c, m->time, m->gravity);
+  mark_fixed(m);
+  PetscCall(ForceScales(m, m->gravity, 1, &p));
+  PetscCall(LackOfBalance(m, m->nodes->fixed, m->nodes->force, p.weight, &m->initial.lacked));
+  PetscFunctionReturn(0);
+}
+
 /* a, in: of held dofs; all of it then, and in n->force what these lack. In the frames. */
 static PetscErrorCode Accelerate(Model *m, PetscBool rest, PetscReal *a)
 {
@@ -107,6 +126,7 @@ PetscErrorCode InitialReactions(Model *m)
   if (m->c->stage > 0 || !case_has_stress(m->c)) PetscFunctionReturn(0);
   if (m->c->initial.equilibrium > EQUILIBRIUM_NONE) PetscFunctionReturn(0); /* which tells them */
   PetscCall(Unbalanced(m, PETSC_FALSE));
+  PetscCall(TellLack(m));
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
     n->held[i] = n->reaction[i] = m->boundary->fixed[i] ? -n->force[i] : 0;
   frames_turn(&m->boundary->frames, m->dim, n->held);
@@ -133,6 +153,7 @@ PetscErrorCode InitialAcceleration(Model *m)
 
   PetscFunctionBeginUser;
   PetscCall(Unbalanced(m, PETSC_FALSE));
+  PetscCall(TellLack(m));
   PetscCall(PetscArrayzero(n->a, dofs));
   PetscCall(Accelerate(m, PETSC_TRUE, n->a));
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i)

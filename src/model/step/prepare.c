@@ -135,9 +135,7 @@ static PetscErrorCode HoldConstraints(Model *m, PetscReal dt)
   PetscFunctionReturn(0);
 }
 
-/* Norms over nodes that material touches: gravity, the inertia force of stopping within the step,
- * and that of the motion at its start. */
-static PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal dt, StepProblem *p)
+PetscErrorCode ForceScales(const Model *m, const PetscReal *g, PetscReal dt, StepProblem *p)
 {
   const NodalFields *n = m->nodes;
   PetscReal local[3] = {0, 0, 0}, sum[3];

@@ -388,6 +388,7 @@ static const char *why_empty(const Model *m, const MeasureSpec *measure, PetscBo
   if (measure_has_window(measure)) return "too few steps with a value reach into its window";
   if (measure_find(measure->kind)->events) return "none of what it counts is over";
   if (!strcmp(measure->kind, "formula")) return "its formula has no value there, or a measure in it has none";
+  if (!strcmp(measure->kind, "initial")) return "no equilibrium was sought before the first step";
   if (!strncmp(measure->kind, "wall_", 5)) return "a wall without `mass` has no motion of its own";
   if (!strcmp(measure->kind, "energy") && lacks_energy(m)) return "the law of a material tells no energy";
   if (any) return "what it measures is there, and deformed beyond what numbers hold";

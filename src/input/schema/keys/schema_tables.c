@@ -317,7 +317,8 @@ static const SchemaEntry initial_entries[] = {
     "equilibrium", WORD, NULL,
     "before the first step forces come to balance under gravity and loads as they are at t = 0, without inertia: from "
     "the initial stress of the bodies (k0, stress), or from none, which is gravity loading. What was lacking is told",
-    .words = equilibrium_words, .note = "statics, and the mixed formulation, with an initial stress: direct, else none",
+    .words = equilibrium_words,
+    .note = "statics, and the mixed formulation, with an initial stress: direct (gmm seeks none), else none",
     AT(InitialSpec, equilibrium)),
   KEY("reset_displacement", BOOLEAN, NULL,
       "what moves on the way to this equilibrium is forgotten: bodies keep the shape that they are given, and only "
