@@ -85,6 +85,14 @@ warned "J2" "'clay' yields without any change of its volume" -- \
   --set 'materials.clay={law: j2, density: 1, young: 1e5, poisson: 0.3, yield_stress: 100}'
 warned "rubber" "'clay' hardly changes its volume" -- --set 'materials.clay={law: neo-hookean, density: 1, young: 1e5, poisson: 0.49}'
 warned "rubber by its moduli" "'clay' hardly changes its volume" -- --set 'materials.clay={law: neo-hookean, density: 1, bulk: 1e6, shear: 1e4}'
+# Cam clay with K = p (1 - kappa / v) / (kappa / v): 0.49 is K = 149 / 3 G, reached at p = 1e4 149 / 3 0.02 / 0.98 = 10136 Pa, whatever its reference.
+for ranks in 1 3; do
+  for pressure in 1.02e4 1.01e4; do
+    expect "clay under $pressure on $ranks" 0 on_ranks $ranks "$talus" check case.yaml --set loads="{}" --set "bodies[0].stress={xx: \"-$pressure\", yy: \"-$pressure\", zz: \"-$pressure\"}" \
+      --set 'materials.clay={law: modified-cam-clay, density: 1, critical_stress_ratio: 1, lambda: 0.1, kappa: 0.02, shear_modulus: 1e4, ocr: 2}'
+    if [ $pressure = 1.02e4 ]; then says err.txt "'clay' hardly changes its volume under the stress that it begins with"; else lacks err.txt "hardly changes"; fi
+  done
+done
 warned "mixed" -- --set formulation=mixed
 warned "a shared volume" -- --set formulation=mean-dilatation
 warned "a shared volume of triangles" "formulation 'mean-dilatation' does nothing for linear triangles" "take quadrilaterals" -- \

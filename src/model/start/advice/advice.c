@@ -87,18 +87,51 @@ static PetscErrorCode AdviseSharing(const Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+/* Bulk modulus of a point as it begins, Pa: 9 K = c_iijj + 2 tr tau, of which c lacks the latter; 0: it bears none. */
+static PetscReal bulk_of(const Model *m, PetscInt p, const Material *material)
+{
+  static const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  PetscReal state[LAW_MAX_STATE], tau[6], c[36], sum = 0;
+  if (material->law->update(material->parameters, 1, identity, point_real(m->points, POINT_STATE, p), state, tau, c) !=
+      LAW_OK)
+    return 0;
+  for (int i = 0; i < 3; ++i) sum += c[6 * i] + c[6 * i + 1] + c[6 * i + 2] + 2 * tau[i];
+  return sum / 9;
+}
+
+/* Of the stiffest point of body b, where a law's stiffness goes with the stress. */
+static PetscErrorCode PoissonOf(const Model *m, PetscInt b, const Material *material, PetscReal *poisson)
+{
+  const PetscReal shear = material->elastic.shear;
+  PetscReal bulk = 0;
+
+  PetscFunctionBeginUser;
+  *poisson = material->elastic.poisson;
+  if (!material->law->elastic) PetscFunctionReturn(0);
+  for (PetscInt p = 0; p < m->points->n; ++p)
+    if (m->points->body[p] == b) bulk = PetscMax(bulk, bulk_of(m, p, material));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &bulk, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  if (bulk > 0) *poisson = (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear));
+  PetscFunctionReturn(0);
+}
+
 /* Measured (the footing of tests/program/traps.sh): quadrilaterals with four points, and triangles,
  * carry six times Prandtl's load and show no limit. */
-static void advise_locking(const Model *m, const BodySpec *body, PetscInt i, Diag *diag)
+static PetscErrorCode AdviseLocking(const Model *m, PetscInt b, PetscInt i, Diag *diag)
 {
   const MaterialSpec *spec = &m->c->materials[i];
   const Material *material = &m->materials[i];
   const char *key = "poisson", *what;
+  PetscReal poisson;
   char path[256];
-  if (m->formulation->pressure || m->formulation->cells || !cells_lock(m, body)) return;
+
+  PetscFunctionBeginUser;
+  if (m->formulation->pressure || m->formulation->cells || !cells_lock(m, &m->c->bodies[b])) PetscFunctionReturn(0);
+  PetscCall(PoissonOf(m, b, material, &poisson));
   if (flows_at_constant_volume(spec, material, &key)) what = "yields without any change of its volume";
-  else if (material->elastic.poisson >= NEARLY_INCOMPRESSIBLE) what = "hardly changes its volume";
-  else return;
+  else if (poisson < NEARLY_INCOMPRESSIBLE) PetscFunctionReturn(0);
+  else if (material->law->elastic) key = "law", what = "hardly changes its volume under the stress that it begins with";
+  else what = "hardly changes its volume";
   if (!constant(spec, key) && strcmp(key, "law")) key = "bulk"; /* poisson follows from it */
   PetscSNPrintf(path, sizeof path, "materials.%s.%s", spec->name, key);
   diag_warning(
@@ -107,6 +140,7 @@ static void advise_locking(const Model *m, const BodySpec *body, PetscInt i, Dia
     "much, often several times",
     spec->name, what, m->method->clouds ? "clouds" : cells_plural[m->grid->type]);
   hint_unlocked(m, material, diag);
+  PetscFunctionReturn(0);
 }
 
 /* --- walls that nothing meets --- */
@@ -227,7 +261,7 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
   PetscCall(AdviseUnits(m, diag));
   for (PetscInt b = 0; b < m->c->n_bodies; ++b)
     for (PetscInt i = 0; i < m->c->n_materials; ++i)
-      if (!strcmp(m->c->bodies[b].material, m->c->materials[i].name)) advise_locking(m, &m->c->bodies[b], i, diag);
+      if (!strcmp(m->c->bodies[b].material, m->c->materials[i].name)) PetscCall(AdviseLocking(m, b, i, diag));
   PetscCall(AdviseSharing(m, diag));
   PetscCall(AdviseThin(m, diag));
   PetscCall(AdviseCells(m, diag));
