@@ -112,10 +112,12 @@ typedef struct Law {
   /* Tell a state that initial_stress gave, or the natural one, the size of the cell in which its
    * point starts, m. NULL: the law has no length. */
   void (*size)(const PetscReal *parameters, PetscReal h, PetscReal *state);
-  /* Radius, m, within which number `averaged` of the states is averaged over the points of a material before each
-   * step, and what is done with the mean; reach is 0, or NULL, of a law whose points are alone. */
+  /* Number of the states that the strength follows by a table, 0: none. It counts what this law has done alone: a point
+   * that comes from another law begins with the initial one. */
+  PetscInt followed;
+  /* Radius, m, within which that number is averaged over the points of a material before each step, and what is done
+   * with the mean; reach is 0, or NULL, of a law whose points are alone. */
   PetscReal (*reach)(const PetscReal *parameters);
-  PetscInt averaged;
   void (*hear)(const PetscReal *parameters, PetscReal mean, PetscReal *state);
   /* Tell a state that no more than `most`, ln of a volume ratio, can be open. NULL: the law remembers no opening. */
   void (*room)(const PetscReal *parameters, PetscReal most, PetscReal *state);

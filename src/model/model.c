@@ -214,7 +214,7 @@ static PetscErrorCode CreateBodies(Model *m, Diag *diag)
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (!errors) places_start(m);
   if (!errors) PetscCall(InitialStress(m, &outline, diag));
-  if (!errors) sizes_start(m);
+  for (PetscInt p = 0; p < m->points->n && !errors; ++p) size_start(m, p);
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (!errors && !case_goes_on(m->c)) stresses_check(m, diag); /* else when the state has given its stresses */
   PetscCall(OutlineClear(&outline));

@@ -48,9 +48,9 @@ PetscErrorCode ModelEnable(Model *model);
 PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
 /* Collective. Tell points whose law is nonlocal the mean of what is around them (nonlocal.c). */
 PetscErrorCode NonlocalStep(Model *model);
-/* Tell the laws that have a length the sizes of the cells in which their points start (start/laws.c). */
-void sizes_start(const Model *model);
-/* Smallest and largest of them in each body, m, on this rank: 2 n_bodies, all 0 before. */
+/* Tell the law of point p, if it has a length, the size of the cell in which the point starts (start/laws.c). */
+void size_start(const Model *model, PetscInt p);
+/* Smallest and largest of these sizes in each body, m, on this rank: 2 n_bodies, all 0 before. */
 void sizes_of_bodies(const Model *model, PetscReal *range);
 /* Tell the laws that ask for it where their points start. */
 void places_start(const Model *model);

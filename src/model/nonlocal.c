@@ -46,7 +46,7 @@ static int compare(const void *a, const void *b)
 /* The points of one material; volumes are those of now. */
 static PetscErrorCode Gather(const Model *m, PetscInt material, PetscInt *n, Part **part)
 {
-  const PetscInt averaged = m->materials[material].law->averaged;
+  const PetscInt followed = m->materials[material].law->followed;
   const Points *points = m->points;
 
   PetscFunctionBeginUser;
@@ -58,7 +58,7 @@ static PetscErrorCode Gather(const Model *m, PetscInt material, PetscInt *n, Par
     *to = (Part){.own = p};
     for (PetscInt d = 0; d < m->dim; ++d) to->key[AT + d] = point_real(points, POINT_X, p)[d];
     to->key[VOLUME] = points->real[POINT_VOLUME][p] * points->real[POINT_J][p];
-    to->key[VALUE] = point_real(points, POINT_STATE, p)[averaged];
+    to->key[VALUE] = point_real(points, POINT_STATE, p)[followed];
     ++*n;
   }
   PetscFunctionReturn(0);

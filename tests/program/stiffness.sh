@@ -134,6 +134,24 @@ block fem displacement j2 "young: 5e7, poisson: 0.25, yield_stress: 1e5, hardeni
 expect "from j2 to j2-log" 0 "$talus" run log.yaml --out log --force --quiet
 held log/history.csv 8 1e-10
 
+# Soil that has flowed by mohr-coulomb begins to soften at its peak: N = tan^2(45 + 35 / 2) = 3.690172, 1e5 N + 2e4 sqrt N = 407437 Pa, less
+# 10 degrees and 9 kPa in 0.1 of 1.2e-4 of strain of its own. What has not flowed goes on as the law does that was there from the start, in cells of two `reference_size`.
+peak="young: 5e7, poisson: 0.25, friction_angle: 35, cohesion: 1e4"
+softens="$peak, residual_friction_angle: 25, residual_cohesion: 1e3, residual_strain: 0.1"
+block fem displacement mohr-coulomb "$peak" >flowed.yaml
+{ sed "s/^  A:.*/&\n  B: {law: mohr-coulomb-softening, density: 1000, $softens}/" flowed.yaml
+  echo "stages: [{name: settle}, {name: fail, analysis: {end: 1, steps: 1}, bodies: [{name: a, material: B}], boundary: [{name: top, on: {y: 1}, displacement: {y: -1e-4}}]}]"; } >peak.yaml
+expect "from mohr-coulomb to its peak" 0 "$talus" run peak.yaml --out peak --force --quiet
+awk -F, '$2 == 9 && $6 < -407437 * 0.998 && $6 > -407437 * 1.001 { ok = 1 } END { exit !ok }' peak/history.csv || fail "$name: $(tail -n 2 peak/history.csv)"
+sized="law: mohr-coulomb-softening, density: 1000, $softens, reference_size: 0.25"
+press="{name: press, analysis: {end: 1, steps: 10}, boundary: [{name: top, on: {y: 1}, displacement: {y: -0.03}}]"
+sed "s/y: -0.03}/y: 0}/; s/^  A:.*/&\n  B: {$sized}/" flowed.yaml >rests.yaml
+{ cat rests.yaml; echo "stages: [{name: rest}, $press, bodies: [{name: a, material: B}]}]"; } >later.yaml
+{ sed "s/^  A:.*/  A: {$sized}/; /^  B:/d" rests.yaml; echo "stages: [{name: rest}, $press}]"; } >always.yaml
+expect "softens later" 0 "$talus" run later.yaml --out later --force --quiet
+expect "softens from the start" 0 "$talus" run always.yaml --out always --force --quiet
+like later/history.csv always/history.csv 1e-10
+
 # From one run to the next, with other moduli: all sides are held.
 sed '/^loads/d' from.yaml | sed 's/^boundary:/&\n  - {name: right, on: {x: 1}, fix: [x]}/' >first.yaml
 sed -e 's/young: 5e7/young: 4e7/' -e 's/amplitude: \[\[0, 0\], \[6, 1\], \[99, 1\]\]/amplitude: [[0, 0], [99, 0]]/' first.yaml >next.yaml

@@ -44,24 +44,28 @@ void places_step(const Model *m)
   }
 }
 
+/* Of the cell in which point p starts, m. */
+static PetscReal size_of(const Model *m, PetscInt p)
+{
+  const PetscInt cell = m->points->cell[p];
+  return m->grid->cloud || cell < 0 ? m->grid->smallest : cell_size(m->grid, cell);
+}
+
 void sizes_of_bodies(const Model *m, PetscReal *range)
 {
   for (PetscInt p = 0; p < m->points->n; ++p) {
-    const PetscReal size = cell_size(m->grid, m->points->cell[p]);
+    const PetscReal size = size_of(m, p);
     PetscReal *r = range + 2 * m->points->body[p];
     r[0] = r[1] > 0 ? PetscMin(r[0], size) : size;
     r[1] = PetscMax(r[1], size);
   }
 }
 
-void sizes_start(const Model *m)
+void size_start(const Model *m, PetscInt p)
 {
-  for (PetscInt p = 0; p < m->points->n; ++p) {
-    const Material *material = &m->materials[m->points->material[p]];
-    if (!material->law->size) continue;
-    material->law->size(material->parameters, cell_size(m->grid, m->points->cell[p]),
-                        point_real(m->points, POINT_STATE, p));
-  }
+  const Material *material = &m->materials[m->points->material[p]];
+  if (material->law->size)
+    material->law->size(material->parameters, size_of(m, p), point_real(m->points, POINT_STATE, p));
 }
 
 /* Does the state of a point bear no update, not even one at rest? */

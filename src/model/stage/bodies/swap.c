@@ -17,15 +17,16 @@ PetscBool material_as_stiff(const Material *a, const Material *b)
                      same_constant(a->elastic.shear, b->elastic.shear));
 }
 
-/* Numbers of history that both laws know by the same name; are there any? */
+/* Numbers of history that both laws know by the same name, but for what this one counts by itself; are there any? */
 static PetscBool keep_history(const Law *was, const PetscReal *before, const Law *is, PetscReal *state)
 {
+  const PetscReal *counted = is->followed ? state + is->followed : NULL;
   PetscBool any = PETSC_FALSE;
   for (const LawField *f = is->fields; f->name; state += f++->components) {
     const PetscReal *old = before;
     for (const LawField *g = was->fields; g->name; old += g++->components)
       if (f->components == 1 && g->components == 1 && !strcmp(f->name, g->name)) {
-        *state = *old;
+        if (state != counted) *state = *old;
         any = PETSC_TRUE;
       }
   }

@@ -59,6 +59,7 @@ static PetscErrorCode SwapMaterials(Model *m, const Case *from, Diag *diag)
     if (!before->law) continue;
     m->points->real[POINT_MASS][p] *= now->density / before->density;
     if (!material_as_stiff(before, now) && !point_swap(m->points, p, before, now)) failed = body;
+    if (before->law != now->law) size_start(m, p);
   }
   PetscCall(PetscFree(was));
   PetscCall(TellStress(m, failed, diag));
