@@ -70,7 +70,7 @@ void stress_tell_none(const Case *c, PetscInt b, const Law *law, Diag *diag);
 void equilibrium_check(const Model *model, Diag *diag);
 /* Does everything stay where it is, and only stresses change? */
 PetscBool equilibrium_stays(const Model *model);
-/* Collective. Forces out of balance at dofs that are not fixed over what acts there, `weight` (N) at least; where nothing
+/* Collective. Forces out of balance at dofs that are not fixed over what acts there, `weight` (N) at least; where none
  * does, over what holds the others. force: less the external ones, n_nodes x dim, owners count. */
 PetscErrorCode LackOfBalance(const Model *model, const unsigned char *fixed, const PetscReal *force, PetscReal weight,
                              PetscReal *lack);
