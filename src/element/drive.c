@@ -168,6 +168,7 @@ static PetscBool newton(DrivePoint *point, const Aim *aim, DriveReport *report)
     report->residual[report->n++] = try.size;
     if (try.status != LAW_OK || !isfinite(try.size)) return PETSC_FALSE;
     if (try.size <= 1) {
+      report->passed = PetscMax(report->passed, material_passed(point->material, point->state, try.point.state));
       *point = try.point;
       return PETSC_TRUE;
     }

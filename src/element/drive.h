@@ -31,6 +31,7 @@ typedef struct {
 typedef struct {
   PetscInt iterations, substeps; /* in all */
   PetscReal reached;             /* share of the way from `from` to `to`, 1 if all went well */
+  PetscReal passed;              /* most of a piece of its table of strength at once (Law.passed) */
   LawStatus status;              /* the law's last answer */
   PetscInt n;                    /* of the last Newton iteration: its residuals, relative */
   PetscReal residual[DRIVE_ITERATIONS];

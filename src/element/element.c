@@ -12,6 +12,7 @@ typedef struct {
   DrivePoint point;
   ElementTable table;
   ElementSummary summary;
+  PetscReal passed; /* most of a piece of the table of strength in one part of an increment */
   Diag *diag;
 } Element;
 
@@ -85,6 +86,16 @@ static void tell_stuck(const Element *e, PetscInt stage, const DriveControl *con
   else diag_hint(e->diag, "the law gives no stress there");
 }
 
+static void warn_of_passed(const Element *e)
+{
+  if (e->passed <= TABLE_PASSED) return;
+  diag_warning(e->diag, NULL,
+               "an increment goes through %.2g of a piece of the table of strength (peak_strain, residual_strain): it "
+               "has the strength of its end, and never had that between",
+               (double)e->passed);
+  diag_hint(e->diag, "take more `steps`: the error goes with their size");
+}
+
 /* PETSC_FALSE in *done: it cannot be followed further. */
 static PetscErrorCode Follow(Element *e, PetscInt stage, PetscBool *done)
 {
@@ -107,6 +118,7 @@ static PetscErrorCode Follow(Element *e, PetscInt stage, PetscBool *done)
     e->summary.iterations += report.iterations;
     e->summary.most_iterations = PetscMax(e->summary.most_iterations, report.iterations);
     e->summary.substeps += report.substeps;
+    e->passed = PetscMax(e->passed, report.passed);
     memcpy(from, to, sizeof from);
     if (*done || report.reached > 0) PetscCall(ElementTableAdd(&e->table, stage + 1, &e->point));
     if (!*done) tell_stuck(e, stage, &control, &report, ((PetscReal)i + report.reached) / (PetscReal)s->steps);
@@ -141,6 +153,7 @@ static PetscErrorCode FollowAll(Element *e, const char *folder, FILE *out, Eleme
   PetscFunctionBeginUser;
   PetscCall(ElementTableAdd(&e->table, 0, &e->point));
   for (PetscInt s = 0; s < e->spec->n_stages && done; ++s) PetscCall(Follow(e, s, &done));
+  warn_of_passed(e);
   element_measure(&e->table, e->summary.measures);
   PetscCall(Write(e, folder, out));
   *outcome = done ? ELEMENT_DONE : ELEMENT_STUCK;

@@ -214,6 +214,11 @@ static PetscReal wave_modulus(const Elasticity *elastic, PetscBool mixed)
   return (mixed ? PetscMin(elastic->bulk, limit) : elastic->bulk) + 4.0 / 3.0 * elastic->shear;
 }
 
+PetscReal material_passed(const Material *m, const PetscReal *before, const PetscReal *state)
+{
+  return m->law->passed ? m->law->passed(m->parameters, before, state) : 0.0;
+}
+
 PetscReal material_confined(const Material *m) { return m->elastic.bulk + 4.0 / 3.0 * m->elastic.shear; }
 
 PetscBool material_symmetric(const Material *m, PetscBool strength_varies)

@@ -208,6 +208,8 @@ typedef struct Model {
     PetscReal first, last;
   } unstable;
   Tries tries; /* since the start */
+  /* most of a piece of its table of strength that a point of this rank has passed in a step (Law.passed) */
+  PetscReal passed;
   Softening limit;
   Strength strength;
   InitialState initial;

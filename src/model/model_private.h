@@ -369,6 +369,9 @@ void mark_fixed(Model *model);
 /* Collective. History, prescribed increments and loads for a step of dt; the first guess is to be
  * made. */
 PetscErrorCode PrepareStep(Model *model, PetscReal dt, StepProblem *problem);
+/* passed.c. Around the commit of a step; *before is theirs. */
+PetscErrorCode PassedBegin(const Model *model, PetscReal **before);
+PetscErrorCode PassedEnd(Model *model, PetscReal **before);
 /* Collective. Norms over nodes that material touches: gravity g, the inertia force of stopping within a step of dt, and
  * that of the motion at its start. */
 PetscErrorCode ForceScales(const Model *model, const PetscReal *g, PetscReal dt, StepProblem *problem);

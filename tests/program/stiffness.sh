@@ -151,6 +151,20 @@ sed "s/y: -0.03}/y: 0}/; s/^  A:.*/&\n  B: {$sized}/" flowed.yaml >rests.yaml
 expect "softens later" 0 "$talus" run later.yaml --out later --force --quiet
 expect "softens from the start" 0 "$talus" run always.yaml --out always --force --quiet
 like later/history.csv always/history.csv 1e-10
+lacks err.txt "table of strength"
+# Steps that go over much of the table say so: -ln 0.97 less (1 - 0.25^2) (301 kPa - 1e5) / E, 2 / sqrt 3 times that as strain, in cells of two sizes, over 0.1.
+turn
+expect "softens in a step on $ranks" 0 on_ranks $ranks "$talus" run always.yaml --set stages[1].analysis.steps=1 --out once --force --quiet
+says err.txt "a step has taken a point through up to 0.62 of a piece of its table of strength"
+cat >point.yaml <<'END'
+material: {law: mohr-coulomb-softening, young: 50e6, poisson: 0.25, friction_angle: 35, cohesion: 10e3, residual_friction_angle: 25, residual_strain: 0.1}
+start: {pressure: 100e3}
+path: [{test: triaxial, to: 0.05, steps: 1}]
+END
+expect "a point in an increment" 0 "$talus" element point.yaml --out point
+says err.txt "of a piece of the table of strength"
+expect "a point in fifty" 0 "$talus" element point.yaml --out point --set path[0].steps=50
+lacks err.txt "table of strength"
 
 # From one run to the next, with other moduli: all sides are held.
 sed '/^loads/d' from.yaml | sed 's/^boundary:/&\n  - {name: right, on: {x: 1}, fix: [x]}/' >first.yaml

@@ -109,6 +109,23 @@ static void size(const PetscReal *q, PetscReal h, PetscReal *state)
   state[6 + SCALE] = q[SOFT_SIZE] > 0.0 ? h / q[SOFT_SIZE] : 1.0;
 }
 
+/* The offset of a nonlocal strain follows by a step. */
+static PetscReal passed(const PetscReal *q, const PetscReal *before, const PetscReal *state)
+{
+  const PetscReal strain[3] = {0.0, q[SOFT_PEAK], q[SOFT_RESIDUAL]}, heard = before[6 + OFFSET],
+                  own = before[6 + KAPPA];
+  const PetscReal scale = heard < 0.0 ? before[6 + SCALE] : 1.0, way = scale * (state[6 + KAPPA] - own);
+  const PetscReal from = heard < 0.0 ? scale * own : heard + (1.0 - q[SOFT_WEIGHT]) * own;
+  PetscReal most = 0.0;
+  for (int k = 0; k < 2; ++k) {
+    PetscBool changes = PETSC_FALSE;
+    for (int column = SOFT_PHI; column < SOFT_PEAK; column += 3) changes |= q[column + k] != q[column + k + 1];
+    if (changes && way > 0.0 && from < strain[k + 1] && from + way > strain[k])
+      most = fmax(most, way / (strain[k + 1] - strain[k]));
+  }
+  return most;
+}
+
 static PetscReal reach(const PetscReal *q) { return q[SOFT_LENGTH]; }
 
 static void hear(const PetscReal *q, PetscReal mean, PetscReal *state) { state[6 + OFFSET] = q[SOFT_WEIGHT] * mean; }
@@ -227,6 +244,7 @@ const Law law_mohr_coulomb_softening = {
   .bear = bear,
   .size = size,
   .followed = 6 + KAPPA,
+  .passed = passed,
   .reach = reach,
   .hear = hear,
   .volume = volume,

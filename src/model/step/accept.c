@@ -79,6 +79,7 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
 {
   LawStatus status;
   PetscLogDouble clock;
+  PetscReal *before;
 
   PetscFunctionBeginUser;
   PetscCall(PetscTime(&clock));
@@ -96,8 +97,10 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
   PetscCall(LimitWatch(m, dt));
   WeakFormInput in = weak_form_of(m, 0);
   note_flow(m, -1);
+  PetscCall(PassedBegin(m, &before));
   PetscCall(m->formulation->commit(&in, m->points, &status));
   note_flow(m, 1);
+  PetscCall(PassedEnd(m, &before));
   PetscCheck(status == LAW_OK, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a converged state could not be committed");
   for (PetscInt node = 0; m->nodes->pressure && node < m->grid->n_nodes; ++node)
     m->nodes->pressure[node] = m->pressure_scale * m->nodes->scaled_pressure[node];
