@@ -201,8 +201,8 @@ void material_reduce(Material *material, PetscReal factor);
 /* Tell all of them of the step that is tried; dt = 0: there is none. inertia: is time what clocks show, or, as in
  * statics, a load's? */
 void materials_step(PetscInt n, Material *materials, PetscReal time, PetscReal dt, PetscBool inertia);
-/* Law.passed from one state to another, 0 without a table; what is more than TABLE_PASSED is told. Of an undrained
- * triaxial test that hardens and softens, to five times its peak strain, q is off by 3 % with steps of all of the way to
+/* Law.passed from one state to another, 0 without a table; what is more than TABLE_PASSED is told. Undrained triaxial
+ * compression that hardens and softens, to five times its peak strain: q is off by 3 % with steps of all of the way to
  * the peak, and by 0.3 % with a tenth. */
 #define TABLE_PASSED 0.25
 PetscReal material_passed(const Material *material, const PetscReal *before, const PetscReal *state);

@@ -156,6 +156,14 @@ lacks err.txt "table of strength"
 turn
 expect "softens in a step on $ranks" 0 on_ranks $ranks "$talus" run always.yaml --set stages[1].analysis.steps=1 --out once --force --quiet
 says err.txt "a step has taken a point through up to 0.62 of a piece of its table of strength"
+# A nonlocal strain on the way up to the peak, in short steps: what is alike is no other in many cells than in one.
+sed "s/^  A:.*/  A: {law: mohr-coulomb-softening, density: 1000, $softens, initial_friction_angle: 28, initial_cohesion: 3e3, peak_strain: 0.01, nonlocal_length: 1}/
+  s/end: 8, steps: 8/end: 8, steps: 100/; s/-0.03}, amplitude.*/-0.008}, amplitude: [[0, 0], [8, 1]]}/; s/max: .1.5, 1./max: [1, 1]/" flowed.yaml >rises.yaml
+expect "rises in one cell" 0 "$talus" run rises.yaml --out one --force --quiet --set grid.size=1
+turn
+expect "rises in sixteen on $ranks" 0 on_ranks $ranks "$talus" run rises.yaml --set grid.size=0.25 --out sixteen --force --quiet
+grep -q 'halvings = 0 ' sixteen/log.txt || fail "$name: $(grep halvings sixteen/log.txt)"
+like sixteen/history.csv one/history.csv 1e-9
 cat >point.yaml <<'END'
 material: {law: mohr-coulomb-softening, young: 50e6, poisson: 0.25, friction_angle: 35, cohesion: 10e3, residual_friction_angle: 25, residual_strain: 0.1}
 start: {pressure: 100e3}

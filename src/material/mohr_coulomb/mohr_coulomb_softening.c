@@ -31,13 +31,21 @@ enum { KAPPA, SCALE, OFFSET, SCALARS };
 
 #define ALONE (-1.0) /* offset of a point that has heard of no others: its strain is its own */
 
+/* How a point enters the table. With a weight above 1 its own strain takes from a nonlocal one: past the peak it hardens
+ * by that within a step, before the peak it would soften. There its strength stays what the step began with. */
+static inline SoftScale soft_scale(const PetscReal *q, PetscReal own, PetscReal scale, PetscReal heard)
+{
+  const PetscReal share = 1.0 - q[SOFT_WEIGHT], x = heard + share * own;
+  if (heard < 0.0) return (SoftScale){scale, 0.0};
+  return x < q[SOFT_PEAK] ? (SoftScale){0.0, x} : (SoftScale){share, heard};
+}
+
 /* One point: what the lanes need of it. */
 LANES_INLINE int soften_point(const PetscReal *q, PetscBool moduli, int l, const Lanes e[3], const Lanes *before,
                               Lanes *after, SoftStrength *at, HenckyReturn *r)
 {
   const PetscReal strain[3] = {e[0][l], e[1][l], e[2][l]};
-  const PetscReal heard = before[OFFSET][l];
-  const SoftScale scale = {heard < 0.0 ? before[SCALE][l] : 1.0 - q[SOFT_WEIGHT], PetscMax(heard, 0.0)};
+  const SoftScale scale = soft_scale(q, before[KAPPA][l], before[SCALE][l], before[OFFSET][l]);
   PetscReal elastic[3], D[9];
   SoftTry t;
   const PetscReal kappa = soft_return(q, before[KAPPA][l], scale, strain, at, &t);
