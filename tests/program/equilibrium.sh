@@ -99,6 +99,9 @@ for method in fem mpm gmm; do
   says out.txt "of the weight is out of balance and moves the body from there on"
 done
 says out.txt "warning = this method seeks no equilibrium before the first step"
+expect "a law that always yields" 0 "$talus" check ground.yaml --set initial.equilibrium=elastic-plastic --set bodies[0].k0=0.6 \
+  --set 'materials.clay={law: modified-cam-clay, density: 1800, critical_stress_ratio: 1, lambda: 0.1, kappa: 0.02, shear_modulus: 1e6}'
+says err.txt "'clay' yields from the start: the law modified-cam-clay has no form that does not yield" 'for it `elastic-plastic` is `direct`'
 # A floor that the soil does not reach: the wall beside it rubs, and is not what bears it.
 cat >retained.yaml <<'END'
 kinematics: plane-strain

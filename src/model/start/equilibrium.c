@@ -187,11 +187,24 @@ PetscErrorCode ModelEquilibrate(Model *m, StepReport *report)
   PetscFunctionReturn(0);
 }
 
+/* Laws whose strength nobody can take away go through the first half as they are. */
+static void warn_of_yielding(const Model *m, Diag *diag)
+{
+  for (PetscInt i = 0; i < m->c->n_materials && m->c->initial.equilibrium == EQUILIBRIUM_ELASTIC_FIRST; ++i) {
+    const Law *law = m->materials[i].law;
+    if (!law->yields || law->reduce) continue;
+    diag_warning(diag, "initial.equilibrium", "'%s' yields from the start: the law %s has no form that does not yield",
+                 m->c->materials[i].name, law->name);
+    diag_hint(diag, "for it `elastic-plastic` is `direct`");
+  }
+}
+
 void equilibrium_check(const Model *m, Diag *diag)
 {
   const Case *c = m->c;
   char path[64];
   if (!case_equilibrates(c)) return;
+  warn_of_yielding(m, diag);
   if (m->method->clouds)
     diag_error(diag, "initial.equilibrium",
                "method %s does not seek an equilibrium before its first step: mpm and fem do", m->method->name);
