@@ -31,8 +31,8 @@ enum { KAPPA, SCALE, OFFSET, SCALARS };
 
 #define ALONE (-1.0) /* offset of a point that has heard of no others: its strain is its own */
 
-/* How a point enters the table. With a weight above 1 its own strain takes from a nonlocal one: past the peak it hardens
- * by that within a step, before the peak it would soften. There its strength stays what the step began with. */
+/* How a point enters the table. With a weight above 1 its own strain takes from a nonlocal one: past the peak it
+ * hardens by that within a step, before the peak it would soften. There its strength is that of the step's start. */
 static inline SoftScale soft_scale(const PetscReal *q, PetscReal own, PetscReal scale, PetscReal heard)
 {
   const PetscReal share = 1.0 - q[SOFT_WEIGHT], x = heard + share * own;

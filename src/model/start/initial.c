@@ -90,7 +90,7 @@ static PetscErrorCode Unbalanced(Model *m, PetscBool goes_on)
   PetscFunctionReturn(0);
 }
 
-/* What the given stress lacks of balance where nobody seeks it. Constraints of a cloud bear what would count as such. */
+/* What the given stress lacks of balance where nobody seeks it. Constraints of a cloud bear what would count so. */
 static PetscErrorCode TellLack(Model *m)
 {
   const Case *c = m->c;

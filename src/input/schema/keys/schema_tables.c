@@ -309,7 +309,8 @@ static const SchemaTable parallel = {
 static const SchemaWord equilibrium_words[] = {
   {"none", EQUILIBRIUM_NONE, "the first step finds what it may"},
   {"direct", EQUILIBRIUM_DIRECT, "with the laws as they are"},
-  {"elastic-plastic", EQUILIBRIUM_ELASTIC_FIRST, "first as if nothing yielded (but modified-cam-clay, which does), then with the strength that there is"},
+  {"elastic-plastic", EQUILIBRIUM_ELASTIC_FIRST,
+   "first as if nothing yielded (modified-cam-clay does), then with the strength that there is"},
   {NULL, 0, NULL},
 };
 static const SchemaEntry initial_entries[] = {
