@@ -204,7 +204,7 @@ void materials_step(PetscInt n, Material *materials, PetscReal time, PetscReal d
 /* Law.passed from one state to another, 0 without a table; what is more than TABLE_PASSED is told. Undrained triaxial
  * compression that hardens and softens, to five times its peak strain: q is off by 3 % with steps of all of the way to
  * the peak, and by 0.3 % with a tenth. */
-#define TABLE_PASSED 0.25
+#define TABLE_PASSED 0.5
 PetscReal material_passed(const Material *material, const PetscReal *before, const PetscReal *state);
 /* lambda + 2 mu, Pa, of a mixed formulation, too: infinite where incompressible. */
 PetscReal material_confined(const Material *material);

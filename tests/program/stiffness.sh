@@ -167,7 +167,7 @@ like sixteen/history.csv one/history.csv 1e-9
 cat >point.yaml <<'END'
 material: {law: mohr-coulomb-softening, young: 50e6, poisson: 0.25, friction_angle: 35, cohesion: 10e3, residual_friction_angle: 25, residual_strain: 0.1}
 start: {pressure: 100e3}
-path: [{test: triaxial, to: 0.05, steps: 1}]
+path: [{test: triaxial, to: 0.1, steps: 1}]
 END
 expect "a point in an increment" 0 "$talus" element point.yaml --out point
 says err.txt "of a piece of the table of strength"
