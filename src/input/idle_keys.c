@@ -1,5 +1,5 @@
-/* Keys that have no effect in the case that they stand in, by one table, and materials of no body: whoever has written one had something in
- * mind, and is told. */
+/* Keys that have no effect in the case that they stand in, by one table, and materials of no body: whoever has
+ * written one had something in mind, and is told. */
 #include "input/idle_keys.h"
 #include <math.h>
 #include <string.h>
