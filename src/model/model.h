@@ -276,6 +276,8 @@ PetscErrorCode ModelInitialise(Model *model);
 /* Collective. Make the linear system fit the cells that hold material now; ModelStep does it by
  * itself. */
 PetscErrorCode ModelActivate(Model *model);
+/* How long until a wall appears or vanishes, where a step must end, s; PETSC_MAX_REAL: none does. */
+PetscReal model_until_change(const Model *model);
 /* Collective. One step of at most `limit` s; halves it until Newton converges. */
 PetscErrorCode ModelStep(Model *model, PetscReal limit, StepReport *report);
 

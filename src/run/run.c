@@ -5,24 +5,53 @@
 #include "run/report/summary.h"
 #include "run/watch/events.h"
 
-/* Stops that are no farther apart are one, s. */
-static PetscReal closest(const Schedule *s, const Run *r) { return NO_STEP * PetscMin(s->every, r->c->analysis.step); }
-
-/* Time until the schedule next wants the run to stop exactly. */
-static PetscReal until_next(const Schedule *s, const Run *r)
+/* Times at which steps must end are one if they are no farther apart, s. In implicit dynamics a step is not much
+ * shorter than those beside it (docs/theory.md, section 73). */
+static PetscReal closest(const Run *r)
 {
-  const PetscReal end = r->c->analysis.end, next = (PetscReal)(s->count + 1) * s->every;
-  return (s->every <= 0 || next > end - closest(s, r) ? end : next) - r->model->time;
+  PetscReal step = r->model->control.next;
+  if (r->states.every > 0) step = PetscMin(step, r->states.every);
+  if (r->rows.every > 0) step = PetscMin(step, r->rows.every);
+  return (r->c->analysis.type == ANALYSIS_DYNAMIC ? CLOSE_STEPS : NO_STEP) * step;
+}
+
+static PetscReal next_of(const Schedule *s)
+{
+  return s->every > 0 ? (PetscReal)(s->count + 1) * s->every : PETSC_MAX_REAL;
+}
+
+/* Where is it due, if `other` is a time that stays? */
+static PetscReal near(PetscReal due, PetscReal other, PetscReal close)
+{
+  return PetscAbsReal(due - other) <= close ? other : due;
+}
+
+/* The run has to stop next where it ends, a wall comes or goes, or a state or a row is due; but where these are close
+ * together states wait for, or come with, what stays, and rows for either. */
+static Stop next_stop(const Run *r)
+{
+  const PetscReal stays = PetscMin(r->c->analysis.end, r->model->time + model_until_change(r->model));
+  const PetscReal close = closest(r), states = near(next_of(&r->states), stays, close);
+  const PetscReal rows = near(near(next_of(&r->rows), stays, close), states, close);
+  return (Stop){.time = PetscMin(stays, PetscMin(states, rows)), .close = close};
 }
 
 static PetscBool is_due(Schedule *s, const Run *r)
 {
-  const PetscReal time = r->model->time + closest(s, r);
+  const PetscBool stopped = (PetscBool)(r->model->time >= r->stop.time * (1 - 1e-9));
+  const PetscReal time = r->model->time + (stopped ? r->stop.close : 0);
   if (s->every == 0) return PETSC_FALSE;
   if (s->every < 0) return r->model->step % (PetscInt)(-s->every) == 0;
-  if (time < (PetscReal)(s->count + 1) * s->every * (1 - 1e-9)) return PETSC_FALSE;
+  if (time < next_of(s) * (1 - 1e-9)) return PETSC_FALSE;
   s->count = (PetscInt)(time / s->every * (1 + 1e-9));
   return PETSC_TRUE;
+}
+
+void run_count_from(Run *r)
+{
+  const PetscReal time = r->model->time + closest(r);
+  if (r->states.every > 0) r->states.count = (PetscInt)(time / r->states.every * (1 + 1e-9));
+  if (r->rows.every > 0) r->rows.count = (PetscInt)(time / r->rows.every * (1 + 1e-9));
 }
 
 void run_stop(Run *r, const char *reason)
@@ -201,8 +230,8 @@ static PetscErrorCode Advance(Run *r)
 
   PetscFunctionBeginUser;
   while (!r->failed && !r->until.ended && r->model->time < end * (1 - 1e-12)) {
-    const PetscReal limit = PetscMin(until_next(&r->states, r), until_next(&r->rows, r));
-    PetscCall(ModelStep(r->model, limit, &report));
+    r->stop = next_stop(r);
+    PetscCall(ModelStep(r->model, r->stop.time - r->model->time, &report));
     if (report.outcome == STEP_INTERRUPTED) {
       PetscCall(Interrupted(r, "a signal"));
       break;

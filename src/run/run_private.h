@@ -14,6 +14,11 @@ typedef struct {
   PetscInt count; /* how often it happened after the start */
 } Schedule;
 
+/* A time at which a step has to end, and how close to it what is due there may be, s. */
+typedef struct {
+  PetscReal time, close;
+} Stop;
+
 /* What a run remembers besides its model. It counts only what was due: the row and the state of a
  * run that was interrupted are extras. */
 typedef struct {
@@ -36,6 +41,7 @@ typedef struct {
   RunDir *dir;
   Output *output;
   Schedule states, rows;
+  Stop stop;                     /* the next one */
   PetscInt state_step, row_step; /* step of the newest state and row, -1 if none */
   PetscReal *values;             /* of the measures of the present stage */
   PetscReal *row;                /* of the history: the stage, where there are any, and case_columns of the whole run */
@@ -59,6 +65,8 @@ typedef struct {
 
 /* The run ends early; the first reason counts. */
 void run_stop(Run *r, const char *reason);
+/* States and rows that were due until now, in this stage or before it, have been written. */
+void run_count_from(Run *r);
 /* A file that the disk refused ends the run; the log has said so. */
 PetscErrorCode RunWritten(Run *r, PetscErrorCode code);
 PetscErrorCode RunWriteRow(Run *r);

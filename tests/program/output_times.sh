@@ -258,7 +258,7 @@ expect "two steps for what is left" 0 "$talus" run bounce.yaml --out halves --qu
 awk -F , 'NR > 2 && $2 - last != 6 && $1 < 0.1 {bad = 1} {last = $2} END {exit bad || NR != 12}' halves/history.csv ||
   fail "$name: $(cut -d, -f1,2 halves/history.csv | tr '\n' ' ')"
 
-# Where one must be that short, since a wall vanishes just after a state, walls press what is too deep no harder for it
+# Where one must be that short, since walls vanish one after the other, walls press what is too deep no harder for it
 cat >column.yaml <<'END'
 kinematics: plane-strain
 method: mpm
@@ -270,13 +270,25 @@ boundary: [{on: {boundary: left}, fix: [x]}]
 walls:
   - {name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, friction_angle: 31}
   - {name: away, shape: {half-space: {point: [0.5, 0], normal: [-1, 0]}}, until: 0.200001}
+  - {name: also, shape: {half-space: {point: [0.5, 0], normal: [-1, 0]}}, until: 0.2}
 loads: {gravity: [0, -9.81]}
-measures: {transfer: {energy: transfer}}
-output: {every: 0.2}
+measures: {transfer: {energy: transfer}, borne: {wall_force: y, of: {wall: floor}}}
+output: {every: end}
 END
 turn
 expect "a step of a microsecond" 0 on_ranks $ranks "$talus" run column.yaml --out column --quiet
 awk -F , 'NR > 1 && $3 < -0.05 {bad = 1} END {exit bad || $2 != 106}' column/history.csv ||
   fail "$name: $(tail -n 3 column/history.csv | tr '\n' ' ')"
+
+# States that are due just before the run ends, or a wall comes, and rows just beside states, come with these: the last
+# force is that of a step
+expect "the last of 30 a second" 0 "$talus" run column.yaml --out thirty --quiet --set analysis.end=0.1 --set output.every=0.0333333
+awk -F , '{before = last; last = $4} END {exit !($2 == 51 && last / before < 1.05 && last / before > 0.95)}' thirty/history.csv ||
+  fail "$name: $(tail -n 3 thirty/history.csv | tr '\n' ' ')"
+[ "$(grep -c '"time"' thirty/points.hdf.series)" -eq 4 ] || fail "$name: $(cat thirty/points.hdf.series)"
+expect "rows beside states" 0 "$talus" run bounce.yaml --out rows_beside --quiet --set output.every=0.1 --set output.history=0.0200001 \
+  --set walls[1].until=0.2000004 --set analysis.end=0.3
+[ "$(tail -n 1 rows_beside/history.csv | cut -d, -f2)" -eq 150 ] && [ "$(wc -l <rows_beside/history.csv)" -eq 17 ] ||
+  fail "$name: $(cut -d, -f1,2 rows_beside/history.csv | tr '\n' ' ')"
 
 finish

@@ -3,8 +3,10 @@
 #include "case/kinematics/kinematics.h"
 #include "case/spec/measure.h"
 
-/* Of a step: times at which steps must end, but closer together than that, are one. */
+/* Of a step: times at which steps must end, but closer together than that, are one; and, in implicit dynamics, of
+ * those that may move the ones that are so close to another. */
 #define NO_STEP 1e-4
+#define CLOSE_STEPS 0.1
 
 typedef enum { ANALYSIS_STATIC, ANALYSIS_DYNAMIC, ANALYSIS_FACTOR, ANALYSIS_LIMIT, ANALYSIS_EXPLICIT } AnalysisType;
 /* Which velocity of the nodes strains the points of explicit dynamics: that which the points have given them anew

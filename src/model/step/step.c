@@ -18,16 +18,25 @@ static void begin_anew(Model *m)
   if (case_begins_within(m->c, m->time, m->time + (1 - ROUNDING) * step)) m->control.next = step;
 }
 
-/* The next step on the way to a time at which one must end. In implicit dynamics the last two have equal parts of the
- * way, or the last one a thousandth more: one that is much shorter than those beside it solves for light nodes with
- * next to nothing but their consistent mass, and what they get the next step takes for their acceleration. */
+/* Should no step be much shorter than those beside it? In implicit dynamics it solves for light nodes with next to
+ * nothing but their consistent mass, and for walls with what they have left of gaps, and the next one takes what they
+ * get for their acceleration. */
+static PetscBool steps_are_alike(const Model *m)
+{
+  return (PetscBool)(m->scheme->inertia && m->scheme != &time_scheme_explicit && !seeks(m));
+}
+
+/* The next step on the way to a time at which one must end: the last two have equal parts of the way, or the last one a
+ * thousandth more. */
 static PetscReal evenly(const Model *m, PetscReal way)
 {
   const PetscReal dt = m->control.next;
-  const PetscBool alike = (PetscBool)(m->scheme->inertia && m->scheme != &time_scheme_explicit && !seeks(m));
-  if (!alike || way <= (1 + ROUNDING) * dt || way >= 2 * dt) return PetscMin(way, dt);
+  if (!steps_are_alike(m) || way <= (1 + ROUNDING) * dt || way >= 2 * dt) return PetscMin(way, dt);
   return way <= (1 + STRETCH) * dt ? way : way / 2;
 }
+
+/* What is passed by, since it is so close to the start of a step or, before it, to where one must end. */
+static PetscReal passed_by(const Model *m) { return steps_are_alike(m) ? CLOSE_STEPS * m->control.next : 0; }
 
 /* How long the next step of dt may be at most: one longer than `step` ends where a table turns, or it is of `step`. */
 static PetscReal until_corner(const Model *m, PetscReal dt)
@@ -45,7 +54,8 @@ static PetscReal until_peak(const Model *m, PetscReal dt)
 {
   const AnalysisSpec *a = &m->c->analysis;
   if (seeks(m) || a->largest <= (1 + ROUNDING) * a->step || a->type == ANALYSIS_EXPLICIT) return PETSC_MAX_REAL;
-  const PetscReal end = m->time + (m->scheme->inertia ? 2 : 1) * dt, peak = case_peak_within(m->c, m->time, end);
+  const PetscReal end = m->time + (m->scheme->inertia ? 2 : 1) * dt;
+  const PetscReal peak = case_peak_within(m->c, m->time + passed_by(m), end);
   return peak < end ? peak - m->time : PETSC_MAX_REAL;
 }
 
@@ -57,17 +67,22 @@ static PetscReal until_return(const Model *m)
   return step_control_return(&m->control, &m->c->analysis, m->time - m->c->start);
 }
 
+PetscReal model_until_change(const Model *m)
+{
+  return m->walls ? walls_until_change(m->walls, m->time) : PETSC_MAX_REAL;
+}
+
 PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
 {
-  const PetscReal change = m->walls ? walls_until_change(m->walls, m->time) : PETSC_MAX_REAL;
-  limit = PetscMin(limit, change); /* no step goes over the time at which a wall appears or vanishes */
+  limit = PetscMin(limit, model_until_change(m)); /* no step goes over the time at which a wall appears or vanishes */
+  const PetscReal stop = limit;
   begin_anew(m);
   limit = PetscMin(limit, until_corner(m, PetscMin(limit, m->control.next)));
   const PetscReal back = until_return(m);
   const PetscReal peak = until_peak(m, PetscMin(back, PetscMin(limit, m->control.next)));
   const PetscBool returning = (PetscBool)(back < PetscMin(PetscMin(limit, peak), m->control.next));
   limit = PetscMin(PetscMin(limit, back), peak);
-  PetscReal dt = evenly(m, limit);
+  PetscReal dt = evenly(m, stop - limit <= passed_by(m) ? stop : limit);
   const PetscBool shortened = dt < m->control.next;
   StepStart start;
   EnergyStep energy;

@@ -18,14 +18,12 @@ void run_begin_stage(Run *r, PetscInt k)
 /* What goes by the case of the stage; counts begin where the clock stands. */
 static PetscErrorCode Attend(Run *r)
 {
-  const PetscReal time = r->model->time;
   const OutputSpec *output = &r->c->output;
 
   PetscFunctionBeginUser;
   r->states = (Schedule){.every = output->every};
   r->rows = (Schedule){.every = output->history};
-  if (output->every > 0) r->states.count = (PetscInt)(time / output->every * (1 + 1e-9));
-  if (output->history > 0) r->rows.count = (PetscInt)(time / output->history * (1 + 1e-9));
+  run_count_from(r);
   PetscCall(RunMeasuresBegin(r));
   PetscCall(UntilDestroy(&r->until));
   PetscCall(UntilCreate(r->c, &r->until));

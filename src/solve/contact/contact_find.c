@@ -235,6 +235,23 @@ static PetscBool is_edge(const WallPlace *place)
   return (PetscBool)(place->gap > 0 && wall_bend(place) * place->gap > 1 - EDGE);
 }
 
+/* Does the wall meet what is there, and not the other way round? */
+static PetscBool arrives(const Contact *s, const NodalScene *scene, PetscInt k)
+{
+  if (scene->t <= scene->c->start) return PETSC_TRUE; /* with the run, or its stage */
+  return (PetscBool)(wall_comes(s->walls, k, scene->t) && !wall_stands(s->walls, k, scene->t));
+}
+
+/* By how much a wall has passed the surface of a point at the start of the step. One that comes where some of the body
+ * is already, in dynamics, has passed that much: to push it out within a step of any length would give it what speed
+ * and energy one likes (docs/theory.md, section 76). */
+static PetscReal behind_of(const Contact *s, const NodalScene *scene, PetscInt k, const PetscReal *kept, PetscReal gap)
+{
+  const PetscReal behind = kept[KEPT_PASSED(s->dim)];
+  if (!scene->moves || kept[KEPT_STATE] != 0 || gap + behind >= 0 || !arrives(s, scene, k)) return behind;
+  return -gap;
+}
+
 /* The surface of a point, `at` in group g of the support, before one side of wall k: slot and kept are those of that
  * side. */
 static PetscErrorCode MeetSide(Contact *s, const NodalScene *scene, PetscInt g, PetscInt at, PetscInt k,
@@ -259,14 +276,15 @@ static PetscErrorCode MeetSide(Contact *s, const NodalScene *scene, PetscInt g, 
   contact_take_law(s, scene, c);
   contact_remember(c, dim, kept, place.normal);
   c->edge = is_edge(&place);
-  place.gap += kept[KEPT_PASSED(dim)] - reach;
+  place.gap -= reach;
+  c->behind = behind_of(s, scene, k, kept, place.gap);
+  place.gap += c->behind;
   if (contact_passes(s, c, place.gap, scene->first)) {
     --s->n;
     PetscFunctionReturn(0);
   }
   c->gone = !wall_comes(s->walls, k, scene->t);
   c->open = place.gap;
-  c->behind = kept[KEPT_PASSED(dim)];
   c->touches = c->touches && !c->gone;
   PetscCall(ContactAddNodes(s, c, nn));
   for (PetscInt d = 0; d < dim; ++d) c->x[d] = x[d] - reach * place.normal[d];
