@@ -42,7 +42,7 @@ static PetscBool is_due(Schedule *s, const Run *r)
   const PetscReal time = r->model->time + (stopped ? r->stop.close : 0);
   if (s->every == 0) return PETSC_FALSE;
   if (s->every < 0) return r->model->step % (PetscInt)(-s->every) == 0;
-  if (time < next_of(s) * (1 - 1e-9)) return PETSC_FALSE;
+  if (time < next_of(s)) return PETSC_FALSE;
   s->count = (PetscInt)(time / s->every * (1 + 1e-9));
   return PETSC_TRUE;
 }
