@@ -45,7 +45,8 @@ static void test_loads(void **state)
 }
 
 /* What steps make of all of it: sides shorter than a step, a step apart and more. In steps that may grow its corners
- * are ends of steps, but for those that lie closer together than `step`. */
+ * are ends of steps, but for those that lie closer together than `step`, and for what the first two steps, which have
+ * not grown, go over. */
 static void test_sums(void **state)
 {
   static const struct {
@@ -62,6 +63,8 @@ static void test_sums(void **state)
     {{5, {0, 0.021, 0.0232, 0.031, 0.0333}, {0, 0, 1, 1, 0}, NULL, NULL}, 50 * STEP},
     {{5, {0, 0.021, 0.0212, 0.0233, 0.0235}, {0, 0, 1, 1, 0}, "its integral", NULL}, 50 * STEP},
     {{5, {0, 0.0503, 0.0507, 0.0511, 0.2}, {0, 0, 1, 0, 0}, "is 0.0004 s, and steps take 0 s", NULL}, 50 * STEP},
+    {{3, {0, 0.0021, 0.0022}, {1, 1, 0}, "is 0.00215 s, and steps of 0.002 s take 0.003 s", NULL}, 50 * STEP},
+    {{3, {0, 0.0301, 0.0302}, {1, 1, 0}, NULL, NULL}, 50 * STEP},
   };
   (void)state;
   EACH_OF (k, sums) {

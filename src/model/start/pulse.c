@@ -39,12 +39,21 @@ static Integral integral(const Amplitude *a, PetscReal from, PetscReal to)
   return all;
 }
 
-/* The end of a step that begins at t. Steps that may grow end where a table turns, or go over it by a part of `step`
+/* Is the step that begins at t of `step`, and goes over whatever turns within it? So are the first two of a run, and
+ * those in which a table begins to change. */
+static PetscBool has_not_grown(const Advice *advice, PetscReal t)
+{
+  const Case *c = advice->m->c;
+  const PetscReal h = advice->substep;
+  return (PetscBool)(!advice->grows || t < c->start + 1.5 * h || case_begins_within(c, t, t + (1 - 1e-9) * h));
+}
+
+/* The end of a step that begins at t. Steps that have grown end where a table turns, or go over it by a part of `step`
  * but for a peak: on the way there they may be shorter, where nothing turns. */
 static PetscReal step_from(const Advice *advice, PetscReal t)
 {
   const Case *c = advice->m->c;
-  const PetscReal way = advice->grows ? case_corner_after(c, t) - t : 0;
+  const PetscReal way = has_not_grown(advice, t) ? 0 : case_corner_after(c, t) - t;
   const PetscReal to = PetscMin(t + PetscMax(way, advice->substep), c->analysis.end);
   return advice->grows ? case_peak_within(c, t, to) : to;
 }
