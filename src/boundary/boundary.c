@@ -1,3 +1,4 @@
+#include "boundary/bodies.h"
 #include "boundary/boundary.h"
 #include "case/motion.h"
 #include "boundary/slip.h"
@@ -107,21 +108,23 @@ static void mark_entry(Boundary *b, const Grid *grid, PetscInt entry, Diag *diag
 
 static PetscErrorCode CheckSelection(const Boundary *b, const Grid *grid, PetscInt entry, Diag *diag)
 {
-  const Selector *on = &b->c->boundary[entry].on;
+  const MotionSpec *spec = b->c->boundary + entry;
+  const Selector *on = &spec->on;
   PetscInt local = b->motion[entry].n, all;
   PetscBool good = PETSC_TRUE;
   char path[64], from[64], to[64];
 
   PetscFunctionBeginUser;
   PetscCall(MPIU_Allreduce(&local, &all, 1, MPIU_INT, MPI_SUM, grid->comm));
-  if (all) PetscFunctionReturn(0);
+  if (all || bodies_come_later(b->c, spec)) PetscFunctionReturn(0);
   PetscCall(PetscSNPrintf(path, sizeof path, "boundary[%d].on.boundary", (int)entry));
   if (on->boundary) PetscCall(GridCheckBoundary(grid, on->boundary, path, diag, &good));
   if (good) {
     PetscCall(PetscSNPrintf(path, sizeof path, "boundary[%d].on", (int)entry));
     boundary_place(b->dim, grid->min, from);
     boundary_place(b->dim, grid->max, to);
-    diag_error(diag, path, "%s selects no node of the grid, which spans %s to %s", path, from, to);
+    diag_error(diag, path, "%s selects no node of %s, which spans %s to %s", path,
+               spec->n_bodies ? "its bodies in the grid" : "the grid", from, to);
   }
   PetscFunctionReturn(0);
 }
@@ -152,40 +155,55 @@ static PetscErrorCode FindFaces(const Grid *grid, MotionNodes *motion)
   PetscFunctionReturn(0);
 }
 
+/* Where entries are for some bodies alone, which nodes are whose. */
+static PetscErrorCode FindFields(Boundary *b, const Grid *grid, const Points *points)
+{
+  PetscBool any = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (PetscInt k = 0; k < b->c->n_boundary; ++k) any |= b->c->boundary[k].n_bodies > 0;
+  if (!any) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc1(grid->n_nodes, &b->body_field));
+  PetscCall(NodeFields(grid, b->c, points, b->body_field));
+  PetscFunctionReturn(0);
+}
+
 /* Mistakes in the selections go to diag; NULL: they were sought before. */
-static PetscErrorCode SelectNodes(Boundary *b, const Grid *grid, Diag *diag)
+static PetscErrorCode SelectNodes(Boundary *b, const Grid *grid, const Points *points, Diag *diag)
 {
   PetscFunctionBeginUser;
   b->dim = grid->dim;
   b->n_nodes = grid->n_nodes;
+  PetscCall(FindFields(b, grid, points));
   PetscCall(PetscCalloc1(b->n_nodes * b->dim, &b->fixed));
   PetscCall(PetscMalloc1(b->n_nodes * b->dim, &b->entry));
   for (PetscInt i = 0; i < b->n_nodes * b->dim; ++i) b->entry[i] = -1;
   PetscCall(PetscCalloc1(count_entries(b), &b->motion));
   for (PetscInt k = 0; k < count_entries(b); ++k) {
     if (entry_of(b, k)->absent) continue;
-    PetscCall(GridSelectNodes(grid, &entry_of(b, k)->on, &b->motion[k].n, &b->motion[k].node));
+    PetscCall(EntryNodes(grid, b->c, entry_of(b, k), b->body_field, &b->motion[k].n, &b->motion[k].node));
     if (diag && k < b->c->n_boundary) PetscCall(CheckSelection(b, grid, k, diag));
     PetscCall(FindFaces(grid, &b->motion[k]));
     mark_entry(b, grid, k, diag);
   }
-  PetscCall(WallNormals(grid, b->c, &b->n_walls, &b->walls));
-  PetscCall(WallSides(grid, b->c, &b->n_sides, &b->sides));
+  PetscCall(WallNormals(grid, b->c, b->body_field, &b->n_walls, &b->walls));
+  PetscCall(WallSides(grid, b->c, b->body_field, &b->n_sides, &b->sides));
   PetscCall(SlipMark(b, grid, diag));
   if (diag) PetscCall(SlipCheck(b, grid, diag));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoundaryCreate(const Grid *grid, const Case *c, Diag *diag, Boundary **boundary)
+PetscErrorCode BoundaryCreate(const Grid *grid, const Case *c, const Points *points, Diag *diag, Boundary **boundary)
 {
   PetscFunctionBeginUser;
+  bodies_check(c, diag);
   PetscCall(PetscNew(boundary));
   (*boundary)->c = c;
-  PetscCall(SelectNodes(*boundary, grid, diag));
+  PetscCall(SelectNodes(*boundary, grid, points, diag));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BoundaryRegrid(Boundary **boundary, const Grid *grid)
+PetscErrorCode BoundaryRegrid(Boundary **boundary, const Grid *grid, const Points *points)
 {
   Boundary *b;
 
@@ -194,7 +212,7 @@ PetscErrorCode BoundaryRegrid(Boundary **boundary, const Grid *grid)
   b->c = (*boundary)->c;
   b->field = (*boundary)->field;
   b->field_context = (*boundary)->field_context;
-  PetscCall(SelectNodes(b, grid, NULL));
+  PetscCall(SelectNodes(b, grid, points, NULL));
   PetscCall(BoundaryDestroy(boundary));
   *boundary = b;
   PetscFunctionReturn(0);
@@ -258,6 +276,7 @@ PetscErrorCode BoundaryDestroy(Boundary **boundary)
   if (!b) PetscFunctionReturn(0);
   for (PetscInt k = 0; k < count_entries(b); ++k) PetscCall(PetscFree(b->motion[k].node));
   PetscCall(PetscFree(b->motion));
+  PetscCall(PetscFree(b->body_field));
   PetscCall(PetscFree(b->member));
   PetscCall(PetscFree(b->fixed));
   PetscCall(PetscFree(b->entry));
@@ -268,10 +287,28 @@ PetscErrorCode BoundaryDestroy(Boundary **boundary)
   PetscFunctionReturn(0);
 }
 
+/* The nodes of a place that has moved, at time t. */
+static PetscErrorCode ChooseMoved(Boundary *b, const Grid *grid, PetscInt k, PetscReal t)
+{
+  const MotionSpec *entry = entry_of(b, k);
+  MotionNodes *motion = &b->motion[k];
+  PetscReal X[3];
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(motion->node));
+  PetscCall(PetscMalloc1(b->n_nodes, &motion->node));
+  motion->n = 0;
+  for (PetscInt node = 0; node < b->n_nodes; ++node) {
+    if (b->body_field && !case_takes_field(b->c, entry, b->body_field[node])) continue;
+    motion_origin(b->c, entry, grid->x + node * b->dim, t, X);
+    if (grid_takes(grid, &entry->on, X)) motion->node[motion->n++] = node;
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BoundaryMove(Boundary *b, const Grid *grid, PetscReal t)
 {
   const PetscInt dofs = b->n_nodes * b->dim;
-  PetscReal X[3];
   PetscBool any = PETSC_FALSE;
 
   PetscFunctionBeginUser;
@@ -280,16 +317,7 @@ PetscErrorCode BoundaryMove(Boundary *b, const Grid *grid, PetscReal t)
   PetscCall(PetscArrayzero(b->fixed, dofs));
   for (PetscInt i = 0; i < dofs; ++i) b->entry[i] = -1;
   for (PetscInt k = 0; k < count_entries(b); ++k) {
-    MotionNodes *motion = &b->motion[k];
-    if (entry_of(b, k)->moves && !entry_of(b, k)->absent) {
-      PetscCall(PetscFree(motion->node));
-      PetscCall(PetscMalloc1(b->n_nodes, &motion->node));
-      motion->n = 0;
-      for (PetscInt node = 0; node < b->n_nodes; ++node) {
-        motion_origin(b->c, &b->c->boundary[k], grid->x + node * b->dim, t, X);
-        if (grid_takes(grid, &b->c->boundary[k].on, X)) motion->node[motion->n++] = node;
-      }
-    }
+    if (entry_of(b, k)->moves && !entry_of(b, k)->absent) PetscCall(ChooseMoved(b, grid, k, t));
     mark_entry(b, grid, k, NULL);
   }
   PetscCall(SlipMark(b, grid, NULL));

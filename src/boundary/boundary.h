@@ -12,6 +12,7 @@
 #include "boundary/frames.h"
 #include "boundary/normals.h"
 #include "grid/cloud/cloud.h"
+#include "points/points.h"
 
 typedef struct {
   PetscInt n, *node; /* local nodes, ghosts too */
@@ -26,6 +27,8 @@ typedef void (*MotionField)(void *context, const PetscReal *x, PetscReal t0, Pet
 typedef struct Boundary {
   const Case *c;
   PetscInt dim, n_nodes;
+  PetscInt
+    *body_field; /* n_nodes: the velocity field of each; NULL: no entry names bodies, or the nodes are a cloud's */
   MotionNodes *motion;  /* one per entry of the case's boundary; in axisymmetry the axis behind them */
   unsigned char *fixed; /* n_nodes x dim */
   /* n_nodes x dim: the entry that prescribes the dof, -1 if none; of several the first one that faces along it, or the
@@ -43,16 +46,16 @@ typedef struct Boundary {
   void *field_context;
 } Boundary;
 
-/* Collective. Unknown boundaries, entries that select nothing, and contradictory entries go to
- * diag. */
-PetscErrorCode BoundaryCreate(const Grid *grid, const Case *c, Diag *diag, Boundary **boundary);
+/* Collective. Points tell whose nodes are whose. Unknown boundaries, entries that select nothing, and contradictory
+ * entries go to diag. */
+PetscErrorCode BoundaryCreate(const Grid *grid, const Case *c, const Points *points, Diag *diag, Boundary **boundary);
 /* Collective. Carry a boundary of the mesh over to the cloud that has just been made of its owned nodes. */
 PetscErrorCode BoundaryToCloud(const Boundary *of_mesh, const Grid *mesh, Grid *cloud, Boundary **boundary);
 /* Lists and marks anew from `member`, after the cloud's ghosts or owners changed. */
 PetscErrorCode BoundaryFollow(Boundary *boundary, const Grid *cloud);
 /* Collective. The same boundary on `grid`, which is the grid that it was made for, shared among the
- * ranks in another way. */
-PetscErrorCode BoundaryRegrid(Boundary **boundary, const Grid *grid);
+ * ranks in another way, with its points. */
+PetscErrorCode BoundaryRegrid(Boundary **boundary, const Grid *grid, const Points *points);
 PetscErrorCode BoundaryDestroy(Boundary **boundary);
 
 /* Which of `motion` is the axis, whose nodes the program holds along x; -1: there is none. */

@@ -1,6 +1,7 @@
 #include "boundary/normals.h"
 #include "base/math/vector.h"
 #include "base/math/eigen.h"
+#include "boundary/bodies.h"
 
 #define SIDES 6 /* a cell has at most */
 
@@ -155,7 +156,7 @@ static void set_directions(PetscInt dim, const PetscReal *spread, const PetscRea
 }
 
 /* Nodes of entries that slide, ascending, with the first such entry. */
-static PetscErrorCode ListNodes(const Grid *grid, const Case *c, PetscInt *n, WallNode **list)
+static PetscErrorCode ListNodes(const Grid *grid, const Case *c, const PetscInt *field, PetscInt *n, WallNode **list)
 {
   PetscInt *entry, n_selected, *node;
 
@@ -165,7 +166,7 @@ static PetscErrorCode ListNodes(const Grid *grid, const Case *c, PetscInt *n, Wa
   *n = 0;
   for (PetscInt k = 0; k < c->n_boundary; ++k) {
     if (!c->boundary[k].component[NORMAL]) continue;
-    PetscCall(GridSelectNodes(grid, &c->boundary[k].on, &n_selected, &node));
+    PetscCall(EntryNodes(grid, c, c->boundary + k, field, &n_selected, &node));
     for (PetscInt i = 0; i < n_selected; ++i) {
       if (entry[node[i]] >= 0) continue;
       entry[node[i]] = k;
@@ -180,7 +181,7 @@ static PetscErrorCode ListNodes(const Grid *grid, const Case *c, PetscInt *n, Wa
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode WallNormals(const Grid *grid, const Case *c, PetscInt *n, WallNode **nodes)
+PetscErrorCode WallNormals(const Grid *grid, const Case *c, const PetscInt *field, PetscInt *n, WallNode **nodes)
 {
   PetscReal *spread, *normal;
   Walls walls;
@@ -191,7 +192,7 @@ PetscErrorCode WallNormals(const Grid *grid, const Case *c, PetscInt *n, WallNod
   *nodes = NULL;
   for (PetscInt k = 0; k < c->n_boundary; ++k) any |= c->boundary[k].component[NORMAL];
   if (!any) PetscFunctionReturn(0);
-  PetscCall(ListNodes(grid, c, n, nodes));
+  PetscCall(ListNodes(grid, c, field, n, nodes));
   PetscCall(CollectSides(grid, c, -1, &walls));
   PetscCall(PetscCalloc2(grid->n_nodes * 7, &spread, grid->n_nodes * 3, &normal));
   PetscCall(GatherSpread(grid, c, &walls, spread));
@@ -207,8 +208,8 @@ PetscErrorCode WallNormals(const Grid *grid, const Case *c, PetscInt *n, WallNod
 }
 
 /* Of one entry at the nodes that it shares with others. Appends. */
-static PetscErrorCode AddSides(const Grid *grid, const Case *c, PetscInt entry, const PetscInt *shared, PetscInt *n,
-                               WallSide **sides)
+static PetscErrorCode AddSides(const Grid *grid, const Case *c, const PetscInt *field, PetscInt entry,
+                               const PetscInt *shared, PetscInt *n, WallSide **sides)
 {
   PetscReal *spread, *normal;
   PetscInt n_selected, *node;
@@ -219,7 +220,7 @@ static PetscErrorCode AddSides(const Grid *grid, const Case *c, PetscInt entry, 
   PetscCall(PetscCalloc2(grid->n_nodes * 7, &spread, grid->n_nodes * 3, &normal));
   PetscCall(GatherSpread(grid, c, &walls, spread));
   PetscCall(GatherNormals(grid, c, &walls, spread, normal));
-  PetscCall(GridSelectNodes(grid, &c->boundary[entry].on, &n_selected, &node));
+  PetscCall(EntryNodes(grid, c, c->boundary + entry, field, &n_selected, &node));
   PetscCall(PetscRealloc((size_t)(*n + n_selected) * sizeof **sides, sides));
   for (PetscInt k = 0; k < n_selected; ++k) {
     PetscReal *at = normal + node[k] * 3;
@@ -241,7 +242,7 @@ static int compare_sides(const void *a, const void *b)
   return x->entry < y->entry ? -1 : x->entry > y->entry;
 }
 
-PetscErrorCode WallSides(const Grid *grid, const Case *c, PetscInt *n, WallSide **sides)
+PetscErrorCode WallSides(const Grid *grid, const Case *c, const PetscInt *field, PetscInt *n, WallSide **sides)
 {
   PetscInt n_entries = 0, n_selected, *node, *shared;
 
@@ -253,12 +254,12 @@ PetscErrorCode WallSides(const Grid *grid, const Case *c, PetscInt *n, WallSide 
   PetscCall(PetscCalloc1(grid->n_nodes, &shared));
   for (PetscInt k = 0; k < c->n_boundary; ++k) {
     if (!slides(c->boundary + k)) continue;
-    PetscCall(GridSelectNodes(grid, &c->boundary[k].on, &n_selected, &node));
+    PetscCall(EntryNodes(grid, c, c->boundary + k, field, &n_selected, &node));
     for (PetscInt i = 0; i < n_selected; ++i) ++shared[node[i]];
     PetscCall(PetscFree(node));
   }
   for (PetscInt k = 0; k < c->n_boundary; ++k)
-    if (slides(c->boundary + k)) PetscCall(AddSides(grid, c, k, shared, n, sides));
+    if (slides(c->boundary + k)) PetscCall(AddSides(grid, c, field, k, shared, n, sides));
   if (*n) qsort(*sides, (size_t)*n, sizeof **sides, compare_sides);
   PetscCall(PetscFree(shared));
   PetscFunctionReturn(0);

@@ -23,8 +23,8 @@ typedef struct {
  * sides of cells that the same entries take. All entries make one wall. The normal is that through
  * which nothing flows: n_I = integral of N_I n over the wall, around the circle where rings
  * strain. To be freed with PetscFree. */
-PetscErrorCode WallNormals(const Grid *grid, const Case *c, PetscInt *n, WallNode **nodes);
+PetscErrorCode WallNormals(const Grid *grid, const Case *c, const PetscInt *field, PetscInt *n, WallNode **nodes);
 
 /* Collective. The sides of the nodes that several entries with `fix: [normal]` select, ascending by node and entry. To
  * be freed with PetscFree. */
-PetscErrorCode WallSides(const Grid *grid, const Case *c, PetscInt *n, WallSide **sides);
+PetscErrorCode WallSides(const Grid *grid, const Case *c, const PetscInt *field, PetscInt *n, WallSide **sides);

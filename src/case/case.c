@@ -94,6 +94,7 @@ static PetscErrorCode BoundaryAndLoadsClear(Case *c)
   for (PetscInt i = 0; i < c->n_boundary; ++i) {
     PetscCall(SelectorClear(&c->boundary[i].on));
     PetscCall(AmplitudeClear(&c->boundary[i].amplitude));
+    PetscCall(StringsClear(c->boundary[i].n_bodies, &c->boundary[i].bodies));
     PetscCall(PetscFree(c->boundary[i].name));
   }
   PetscCall(PetscFree(c->boundary));

@@ -149,6 +149,8 @@ PetscInt case_body(const Case *c, const char *name); /* its index; the name is o
  * and how many there are. Bodies of one field stick to each other where they share nodes. */
 PetscInt case_field(const Case *c, PetscInt body);
 PetscInt case_fields(const Case *c);
+/* Does an entry of the boundary take nodes of that velocity field? */
+PetscBool case_takes_field(const Case *c, const MotionSpec *entry, PetscInt field);
 
 /* It reads this file, too; one that is known stays as it is. */
 PetscErrorCode CaseAddFile(Case *c, const char *key, const char *path);

@@ -42,3 +42,10 @@ PetscInt case_fields(const Case *c)
   for (PetscInt b = 0; b < c->n_bodies; ++b) most = PetscMax(most, case_field(c, b));
   return most + 1;
 }
+
+PetscBool case_takes_field(const Case *c, const MotionSpec *entry, PetscInt field)
+{
+  for (PetscInt i = 0; i < entry->n_bodies; ++i)
+    if (case_field(c, case_body(c, entry->bodies[i])) == field) return PETSC_TRUE;
+  return (PetscBool)!entry->n_bodies;
+}

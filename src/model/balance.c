@@ -88,7 +88,7 @@ PetscErrorCode ModelRegrid(Model *m, Grid *grid, PetscInt *moved)
   PetscInt followers = 0;
   PetscCall(PointsRepartition(m->tracers, m->grid, grid, &followers));
   PetscCall(LoadsRegrid(m->loads, m->grid, grid, m->points));
-  PetscCall(BoundaryRegrid(&m->boundary, grid));
+  PetscCall(BoundaryRegrid(&m->boundary, grid, m->points));
   PetscCall(ModelDestroyFields(m));
   PetscCall(GridDestroy(&m->grid));
   m->grid = grid;

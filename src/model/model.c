@@ -314,7 +314,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(BuildBodies(m, diag, &good));
   if (!good) PetscFunctionReturn(0);
   PetscCall(WallsStart(m, diag));
-  PetscCall(BoundaryCreate(m->grid, m->c, diag, &m->boundary));
+  PetscCall(BoundaryCreate(m->grid, m->c, m->points, diag, &m->boundary));
   PetscCall(LoadsCreate(m->grid, m->c, m->points, m->method->restores_grid, diag, &m->loads));
   PetscCall(CreateTracers(m, diag));
   measures_check(m, diag);
@@ -331,6 +331,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(ForcesCreate(m, diag));
   if (m->method->clouds) PetscCall(ModelWarnOfObstacles(m, diag));
   PetscCall(AdviseBeside(m, diag));
+  if (!m->time) PetscCall(AdviseHangs(m, diag));
   if (!m->time) PetscCall(CheckHeld(m, diag)); /* later bodies and walls are elsewhere: ModelTake */
   if (m->scheme->inertia) PetscCall(InitialAcceleration(m));
   else PetscCall(InitialReactions(m));

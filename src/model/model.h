@@ -158,7 +158,8 @@ typedef struct Model {
   Points *points;
   Points *tracers; /* body = index of the measure */
   Boundary *boundary;
-  LetGo *let_go; /* one per entry of the boundary; NULL: no place moves */
+  LetGo *let_go;   /* one per entry of the boundary; NULL: no place moves */
+  PetscBool hangs; /* was it told that the boundary holds what should slide? */
   Loads *loads;
   NodalForces forces;
   Walls *walls;     /* NULL: the case has none */

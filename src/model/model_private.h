@@ -346,6 +346,11 @@ void advise_down(const Model *model, Diag *diag);
 PetscErrorCode AdvisePassing(const Model *model, Diag *diag);
 /* beside.c. Collective. The same of what is prescribed where no material is; once nodes know what touches them. */
 PetscErrorCode AdviseBeside(const Model *model, Diag *diag);
+/* hangs.c. Collective. The same of what holds a body only where one that it meets is held; at the start, and if nothing
+ * was said then at the end of a run, which may have brought it there. */
+PetscErrorCode AdviseHangs(Model *model, Diag *diag);
+/* held.c. Collective. Nodes (n_nodes) that the body touches, on all copies: 0 for the others. */
+PetscErrorCode BodyTouches(const Model *model, PetscInt body, PetscReal *touched);
 /* The same of a history of one row that holds means over the whole run: rows.c. */
 PetscErrorCode AdviseRows(const Model *model, Diag *diag);
 /* The same of what would begin after the end: late.c. */

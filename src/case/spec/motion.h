@@ -28,6 +28,8 @@ typedef struct {
   PetscReal value[3];                 /* m or m/s, times the amplitude */
   PetscReal centre[3], axis[3], rate; /* rotation, rad/s (times the amplitude) */
   Amplitude amplitude;
-  char *name; /* for measures and messages; NULL if it has none */
+  char *name;        /* for measures and messages; NULL if it has none */
+  PetscInt n_bodies; /* 0: all */
+  char **bodies;     /* whose nodes it takes */
   PetscBool absent;
 } MotionSpec;

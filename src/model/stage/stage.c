@@ -272,6 +272,7 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
   settle_stress(m);
   stresses_check(m, diag);
   if (next) PetscCall(CheckHeld(m, diag));
+  if (next) PetscCall(AdviseHangs(m, diag));
   if (next) PetscCall(WallsCome(m, from, diag));
   if (next) PetscCall(BeginMeasures(m, from, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));

@@ -1,4 +1,5 @@
 /* From cells to a cloud: what gmm does once, before the first step. */
+#include "boundary/bodies.h"
 #include "model/model_private.h"
 
 #define TAKEN (-1) /* of a node that no body of its velocity field has, but one of another field */
@@ -42,35 +43,6 @@ static PetscErrorCode MarkNodes(const Model *m, unsigned char *marked, unsigned 
   }
   PetscCall(PetscFree(mark));
   PetscCall(PetscFree(beyond));
-  PetscFunctionReturn(0);
-}
-
-/* Nodes of cell `cell` are of a velocity field; sums are taken over all ranks. */
-static void add_field(const Grid *mesh, PetscInt cell, PetscInt field, PetscReal *sum)
-{
-  for (PetscInt I = 0; I < mesh->nodes_per_cell; ++I) {
-    PetscReal *at = sum + 2 * mesh->cell_node[cell * mesh->nodes_per_cell + I];
-    at[0] += 1, at[1] += (PetscReal)field;
-  }
-}
-
-/* The velocity field of each local node: a box has nodes of its own for each field, of a mesh it is that of the body
- * whose cells they are of, and -1 where there is none. */
-static PetscErrorCode NodeFields(const Model *m, PetscInt *field)
-{
-  const Grid *mesh = m->grid;
-  PetscReal *sum; /* of each node: how often it was told, and what */
-
-  PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(2 * mesh->n_nodes, &sum));
-  for (PetscInt e = 0; e < mesh->n_cells && mesh->n_fields > 1; ++e) add_field(mesh, e, grid_field_of(mesh, e), sum);
-  for (PetscInt p = 0; p < m->points->n && mesh->n_fields <= 1; ++p)
-    add_field(mesh, m->points->cell[p], case_field(m->c, m->points->body[p]), sum);
-  PetscCall(GridSumToOwners(mesh, 2, sum));
-  PetscCall(GridToGhosts(mesh, 2, sum));
-  for (PetscInt i = 0; i < mesh->n_nodes; ++i)
-    field[i] = sum[2 * i] > 0 ? (PetscInt)(sum[2 * i + 1] / sum[2 * i] + 0.5) : -1;
-  PetscCall(PetscFree(sum));
   PetscFunctionReturn(0);
 }
 
@@ -119,7 +91,7 @@ PetscErrorCode ModelToCloud(Model *m)
   PetscCall(LoadsLeaveCells(m->loads, m->grid, m->points));
   if (source.n_motions > 1) {
     PetscCall(PetscMalloc1(m->grid->n_nodes, &field));
-    PetscCall(NodeFields(m, field));
+    PetscCall(NodeFields(m->grid, m->c, m->points, field));
     tell_points(m, field);
   }
   source.marked = marked, source.twin = twin, source.motion = field;

@@ -349,6 +349,19 @@ static PetscErrorCode ReportAxis(const Model *m, FILE *out)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode ReportEntry(const Model *m, PetscInt k, FILE *out)
+{
+  const MotionSpec *entry = m->c->boundary + k;
+  PetscInt count[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelCountPrescribed(m, k, count));
+  say(m, out, "#   boundary[%d]: moves %d nodes", (int)k, (int)count[0]);
+  for (PetscInt i = 0; i < entry->n_bodies; ++i) say(m, out, "%s%s", i ? ", " : " of ", entry->bodies[i]);
+  say(m, out, "%s\n", count[0] && !count[1] ? ", none beside material" : "");
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode ReportSets(const Model *m, FILE *out)
 {
   PetscFunctionBeginUser;
@@ -360,12 +373,7 @@ static PetscErrorCode ReportSets(const Model *m, FILE *out)
     if (all[2]) say(m, out, "#   region %s: %d cells\n", set->name, (int)all[2]);
     else say(m, out, "#   boundary %s: %d nodes, %d faces\n", set->name, (int)all[0], (int)all[1]);
   }
-  for (PetscInt k = 0; k < m->c->n_boundary; ++k) {
-    PetscInt count[2];
-    PetscCall(ModelCountPrescribed(m, k, count));
-    say(m, out, "#   boundary[%d]: moves %d nodes%s\n", (int)k, (int)count[0],
-        count[0] && !count[1] ? ", none beside material" : "");
-  }
+  for (PetscInt k = 0; k < m->c->n_boundary; ++k) PetscCall(ReportEntry(m, k, out));
   PetscCall(ReportAxis(m, out));
   PetscFunctionReturn(0);
 }

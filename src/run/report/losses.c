@@ -469,6 +469,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   PetscCall(WarnOfStretch(m, diag));
   PetscCall(WarnOfPull(m, diag));
   PetscCall(WarnOfPassed(m, diag));
+  PetscCall(AdviseHangs(m, diag));
   warn_of_sunk(m, PETSC_FALSE, diag);
   warn_of_no_limit(m, diag);
   warn_of_no_factor(m, diag);

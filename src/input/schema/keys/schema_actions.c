@@ -44,6 +44,11 @@ static const SchemaEntry motion_entries[] = {
       "that its surface cuts. Else the place stays, and material flows away from it. With fem the nodes chosen at the "
       "start move in any case",
       .fallback = "false", AT(MotionSpec, moves)),
+  KEY(
+    "bodies", REFERENCES, NULL,
+    "the bodies whose nodes it holds or moves; others have their own there, as far as an interface parts them: a base "
+    "that is held up to its top face would hold what slides on it, too",
+    .note = "all", .target = "bodies", AT(MotionSpec, bodies), .count = offsetof(MotionSpec, n_bodies)),
   KEY("absent", BOOLEAN, NULL,
       "of a case with stages: it is not there, until one of them says that it is; and from one on that says it is not",
       .fallback = "false", AT(MotionSpec, absent), STAGED),

@@ -3,8 +3,7 @@
  * answer. */
 #include "model/model_private.h"
 
-/* Nodes that the body touches, on all copies. */
-static PetscErrorCode TouchedBy(const Model *m, PetscInt body, PetscReal *touched)
+PetscErrorCode BodyTouches(const Model *m, PetscInt body, PetscReal *touched)
 {
   const Support *w = m->space->support;
 
@@ -37,7 +36,7 @@ static PetscErrorCode Touches(const Model *m, PetscInt *joined, PetscInt *held)
   for (PetscInt k = 0; k < nodes * m->dim; ++k) holds[k] |= boundary_holds(m->boundary, k / m->dim, k % m->dim);
   nodal_forces_hold(&m->forces, &scene, holds);
   for (PetscInt b = 0; b < n; ++b) {
-    PetscCall(TouchedBy(m, b, touched));
+    PetscCall(BodyTouches(m, b, touched));
     for (PetscInt node = 0; node < nodes; ++node) {
       if (touched[node] == 0) continue;
       for (PetscInt d = 0; d < m->dim; ++d) held[b * m->dim + d] |= holds[node * m->dim + d];
@@ -82,7 +81,7 @@ PetscErrorCode JoinedBodies(const Model *m, PetscReal *of)
     for (PetscInt k = 0; k < n * n; ++k)
       if (joined[k]) first[k / n] = PetscMin(first[k / n], first[k % n]);
   for (PetscInt b = 0; b < n; ++b) {
-    PetscCall(TouchedBy(m, b, touched));
+    PetscCall(BodyTouches(m, b, touched));
     for (PetscInt node = 0; node < nodes; ++node)
       if (touched[node] != 0) of[node] = (PetscReal)(first[b] + 1);
   }
