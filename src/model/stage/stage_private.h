@@ -12,7 +12,8 @@ PetscBool body_comes(const Case *c, const Case *from, PetscInt b);
 /* The index of its material. */
 PetscInt body_material(const Case *c, PetscInt body);
 /* bodies/arrive.c. Collective. Points of such bodies, in a mesh whose nodes stood at `drawn` (n_nodes x dim) when they
- * were seeded, fill their cells as they are now; cells that have no room for them are mistakes. */
+ * were seeded, fill their cells as they are now, but that nodes of nothing that goes on stand there again; cells that
+ * have no room for them are mistakes. */
 PetscErrorCode BodiesArrive(Model *model, const Case *from, const PetscReal *drawn, Diag *diag);
 /* bodies/gaps.c. Collective. Warns of such bodies that begin above what they stand on, or in it: it has moved since it
  * was drawn. For grids whose nodes do not move, or do not join bodies. */

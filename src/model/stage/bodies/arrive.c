@@ -1,5 +1,6 @@
 /* Bodies that come, in the cells of a mesh that has moved: they fill them as they are now, undeformed
- * (docs/theory.md, "Stages"). Their points were seeded in the cells as they were drawn. */
+ * (docs/theory.md, "Stages"). Their points were seeded in the cells as they were drawn, and there stand nodes that are
+ * theirs alone: what was in those cells last may have left them anywhere. */
 #include "model/stage/stage_private.h"
 
 #define FLATTEST 0.01 /* of a cell's volume anywhere in it: below that it is as good as turned inside out */
@@ -118,12 +119,37 @@ static PetscErrorCode Refuse(const Model *m, Flattened *worst, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+/* Nodes of cells in which nothing goes on stand where they were drawn. */
+static PetscErrorCode NodesReturn(Model *m, const Case *from, const PetscReal *drawn)
+{
+  const Grid *grid = m->grid;
+  const PetscInt dim = m->dim, nn = grid->nodes_per_cell;
+  PetscReal *stays; /* n_nodes: more than 0 where something goes on */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(grid->n_nodes, &stays));
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscInt cell = m->points->cell[p];
+    if (cell < 0 || body_comes(m->c, from, m->points->body[p])) continue;
+    for (PetscInt i = 0; i < nn; ++i) stays[grid->cell_node[cell * nn + i]] = 1;
+  }
+  PetscCall(GridSumToOwners(grid, 1, stays));
+  PetscCall(GridToGhosts(grid, 1, stays));
+  for (PetscInt node = 0; node < grid->n_nodes; ++node) {
+    if (stays[node] > 0) continue;
+    for (PetscInt d = 0; d < dim; ++d) grid->x[node * dim + d] = drawn[node * dim + d];
+  }
+  PetscCall(PetscFree(stays));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode BodiesArrive(Model *m, const Case *from, const PetscReal *drawn, Diag *diag)
 {
   PetscReal X[CELL_MAX_NODES * 3], x[CELL_MAX_NODES * 3];
   Flattened worst = {.left = PETSC_MAX_REAL};
 
   PetscFunctionBeginUser;
+  PetscCall(NodesReturn(m, from, drawn));
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscInt cell = m->points->cell[p];
     if (cell < 0 || !body_comes(m->c, from, m->points->body[p])) continue;
