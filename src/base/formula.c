@@ -69,9 +69,8 @@ static PetscErrorCode Function(Formula *f, const char *name, PetscBool *known, P
 
 static PetscErrorCode Name(Formula *f, PetscReal *value)
 {
-  static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
   const char *begin = f->at;
-  const size_t length = strspn(begin, letters);
+  const size_t length = strspn(begin, FORMULA_LETTERS);
   PetscBool known = length > 0 && length < FORMULA_NAME;
 
   PetscFunctionBeginUser;

@@ -6,7 +6,8 @@
 #define FORMULA_SIGNS \
   "numbers, + - * / ^, brackets, pi, sqrt exp log sin cos tan atan abs, min max of two" /* in helps */
 
-#define FORMULA_NAME 64 /* bytes of a name at most */
+#define FORMULA_LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789" /* of names */
+#define FORMULA_NAME 64                                                                   /* bytes of a name at most */
 
 typedef struct {
   /* The value of a name; known = PETSC_FALSE: there is none. */

@@ -173,5 +173,7 @@ PetscBool case_counts_at_ends(const AnalysisSpec *a, TableUse use);
 /* A step from t to `until`, or its part up to the peak of such a table that it would pass by, by a twentieth of the
  * table's largest size: its end, s. */
 PetscReal case_peak_within(const Case *c, PetscReal t, PetscReal until);
+/* Has a load that acts a factor whose formula names t? Where such a formula turns nobody knows. */
+PetscBool case_has_timed_factor(const Case *c);
 /* Does any of them begin to change between t and `until`, both counted, having stood still before? */
 PetscBool case_begins_within(const Case *c, PetscReal t, PetscReal until);

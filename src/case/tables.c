@@ -1,5 +1,6 @@
 /* All that changes by a table over time, and where these tables turn. */
 #include <string.h>
+#include "base/formula.h"
 #include "case/case.h"
 
 #define ROUNDING 1e-9 /* of a time: times are sums */
@@ -59,6 +60,24 @@ void case_visit_tables(const Case *c, TableVisit visit, void *context)
   }
   for (PetscInt k = 0; k < c->n_walls; ++k) visit_wall(c, k, visit, context);
   for (PetscInt i = 0; i < c->n_materials; ++i) visit_material(c, c->materials + i, visit, context);
+}
+
+/* Does the formula name t? Names begin with a letter, and go on with digits, too. */
+static PetscBool names_t(const char *formula)
+{
+  for (const char *at = formula; *at;) {
+    const size_t length = strspn(at, FORMULA_LETTERS);
+    if (length == 1 && *at == 't') return PETSC_TRUE;
+    at += PetscMax(length, 1);
+  }
+  return PETSC_FALSE;
+}
+
+PetscBool case_has_timed_factor(const Case *c)
+{
+  for (PetscInt k = 0; k < case_acting_loads(c); ++k)
+    if (c->loads[k].factor && names_t(c->loads[k].factor)) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 /* The first point of the table later than t, but for rounding; a->n: there is none. */

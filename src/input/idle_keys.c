@@ -21,6 +21,7 @@ static PetscBool has_springs(const Case *c, PetscInt i)
   return is_explicit(c, i) && c->n_walls + c->n_interfaces > 0;
 }
 static PetscBool iterates(const Case *c, PetscInt i) { return !is_explicit(c, i); }
+static PetscBool grows(const Case *c, PetscInt i) { return !iterates(c, i) || !case_has_timed_factor(c); }
 static PetscBool is_implicit(const Case *c, PetscInt i) { return has_inertia(c, i) && iterates(c, i); }
 static PetscBool is_mixed(const Case *c, PetscInt i) { return (void)i, case_is_mixed(c); }
 static PetscBool moves(const Case *c, PetscInt i) { return i < c->n_boundary && c->boundary[i].kind != MOTION_FIXED; }
@@ -95,6 +96,9 @@ static const IdleKey keys[] = {
    DYNAMIC},
   {NULL, "analysis.smallest", iterates, OF_STEPS},
   {NULL, "analysis.largest", iterates, OF_STEPS},
+  {NULL, "analysis.largest", grows,
+   "the `factor` of a load is a formula of t, and no step over it is longer than `step`",
+   "an amplitude, at whose points steps end, in place of that formula, or leave it out"},
   {NULL, "analysis.travel", iterates, OF_STEPS},
   {NULL, "analysis.courant", is_explicit, OF_EXPLICIT},
   {NULL, "analysis.update", is_explicit, OF_EXPLICIT},

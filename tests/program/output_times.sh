@@ -126,6 +126,15 @@ ls pulse_cut/checkpoint_*.h5 | sed -n '9,$p' | xargs rm
 rm pulse_cut/timings.txt
 expect "a pulse, resumed" 0 "$talus" run --resume pulse_cut --quiet
 cmp -s pulse/history.csv pulse_cut/history.csv || fail "$name: another history"
+# A formula of t may turn anywhere: no step over it is longer than `step`; names that only have a t in them are none of t
+turn
+expect "a pulse by a formula on $ranks" 0 on_ranks $ranks "$talus" run pulse.yaml --out formula --quiet \
+  --set 'loads.tractions[0]={on: {x: 1}, value: [1000, 0], factor: "max(0, 1 - abs(t - 0.55) / 0.1)"}'
+says err.txt "analysis.largest has no effect here: the \`factor\` of a load is a formula of t"
+awk -F, 'END { exit ($3 - 100) ^ 2 > 1e-8 || $2 != 100 }' formula/history.csv || fail "$name: $(tail -n 1 formula/history.csv)"
+expect "a pulse over places" 0 "$talus" run pulse.yaml --out places --quiet --set 'loads.tractions[0].factor="sqrt(1) + tan(0 * y)"'
+lacks err.txt warning
+awk -F, 'END { exit ($3 - 100) ^ 2 > 1e-8 || $2 > 25 }' places/history.csv || fail "$name: $(tail -n 1 places/history.csv)"
 # So do they with factors on a material, and with the peak of a load of statics.
 expect "a softer square" 0 "$talus" run pulse.yaml --out soft --quiet --set 'materials.m.amplitude={young: [[0, 1], [0.7, 1], [0.8, 0.5], [0.804, 0.52], [0.808, 0.5]]}'
 awk -F, '{ n += ($1 - 0.7) ^ 2 < 1e-16; m += ($1 - 0.8) ^ 2 < 1e-16 } END { exit n != 1 || m != 1 }' soft/history.csv ||

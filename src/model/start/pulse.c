@@ -39,13 +39,14 @@ static Integral integral(const Amplitude *a, PetscReal from, PetscReal to)
   return all;
 }
 
-/* Is the step that begins at t of `step`, and goes over whatever turns within it? So are the first two of a run, and
- * those in which a table begins to change. */
+/* Is the step that begins at t of `step`, and goes over whatever turns within it? So are the first two of a run, those
+ * in which a table begins to change, and all while a load goes by a formula of t. */
 static PetscBool has_not_grown(const Advice *advice, PetscReal t)
 {
   const Case *c = advice->m->c;
   const PetscReal h = advice->substep;
-  return (PetscBool)(!advice->grows || t < c->start + 1.5 * h || case_begins_within(c, t, t + (1 - 1e-9) * h));
+  if (!advice->grows || case_has_timed_factor(c)) return PETSC_TRUE;
+  return (PetscBool)(t < c->start + 1.5 * h || case_begins_within(c, t, t + (1 - 1e-9) * h));
 }
 
 /* The end of a step that begins at t. Steps that have grown end where a table turns, or go over it by a part of `step`

@@ -38,11 +38,13 @@ static PetscReal evenly(const Model *m, PetscReal way)
 /* What is passed by, since it is so close to the start of a step or, before it, to where one must end. */
 static PetscReal passed_by(const Model *m) { return steps_are_alike(m) ? CLOSE_STEPS * m->control.next : 0; }
 
-/* How long the next step of dt may be at most: one longer than `step` ends where a table turns, or it is of `step`. */
+/* How long the next step of dt may be at most: one longer than `step` ends where a table turns, or it is of `step`, as
+ * all are while a load goes by a formula of t, which may turn anywhere. */
 static PetscReal until_corner(const Model *m, PetscReal dt)
 {
   const PetscReal step = m->c->analysis.step;
   if (seeks(m) || dt <= (1 + ROUNDING) * step) return PETSC_MAX_REAL;
+  if (case_has_timed_factor(m->c)) return step;
   const PetscReal way = case_corner_after(m->c, m->time) - m->time;
   if (way > dt && way < dt + step && way >= 2 * step) return way / 2;
   return PetscMax(way, step);
