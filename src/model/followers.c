@@ -103,8 +103,8 @@ PetscErrorCode FollowersStart(Model *m, Diag *diag)
   PetscCall(PetscCalloc1(n, &u));
   PetscCall(FindUncarried(m, u, &any));
   for (PetscInt k = 0; k < n && any; ++k) {
-    if (u[k].n == 0 || (k < n_measures && m->c->stage > 0)) continue;   /* later: where the material is by then */
-    if (k >= n_measures && m->c->loads[k - n_measures].waits) continue; /* its own stage tells */
+    if (u[k].n == 0 || (k < n_measures && case_goes_on(m->c))) continue; /* later: where the material is by then */
+    if (k >= n_measures && m->c->loads[k - n_measures].waits) continue;  /* its own stage tells */
     if (k < n_measures) snprintf(path, sizeof path, "measures.%s.of.tracer", m->c->measures[k].name);
     else
       PetscSNPrintf(path, sizeof path, "%s.%s", case_load_path(m->c, k - n_measures, list),

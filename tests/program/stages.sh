@@ -180,6 +180,34 @@ done
 expect "onto grid$grid on 3" 0 on_ranks 3 "$talus" run onto.yaml --out onto3 --set "grid$grid" --set 'loads.gravity_amplitude=[[0, 1]]'
 same_answer "$name" onto1 onto3
 
+# Tracers in a run from another one: of mpm the material that is there now (beside it: none), of fem what was there undeformed. A column of
+# 1 m that is pressed by 30 kPa, nu = 0, is l long with (l - 1/l) E / 2 = -30 kPa: 0.7440 m
+cat >press.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 4}
+grid: {box: {min: [0, 0], max: [0.25, 1]}, size: 0.0625}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [0.25, 1]}}, points_per_cell: 4, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, poisson: 0, young: 1e5}}
+boundary: [{on: {y: 0}, fix: [y]}, {on: {x: 0}, fix: [x]}, {on: {x: 0.25}, fix: [x]}]
+loads: {tractions: [{name: T, on: {body: b, y: 1}, value: [0, -3e4]}]}
+measures: {place: {position: y, of: {tracer: [0.125, 0.7]}}}
+output: {every: end}
+END
+awk '/^analysis/ { print "initial: {run: press}" } { print }' press.yaml | sed 's/value: .*}/value: [0, -3e4], amplitude: [[0, 1], [1, 0]]}]}/' >let.yaml
+for method in mpm fem; do
+  turn
+  expect "pressed, $method" 0 "$talus" run press.yaml --out press --force --quiet --set method=$method
+  expect "a tracer from there, $method on $ranks" 0 on_ranks $ranks "$talus" run let.yaml --out let --force --quiet --set method=$method
+  awk -F, -v fem=$([ $method = fem ] && echo 1 || echo 0) 'NR == 1 { next } { y[NR] = $3 } END { l = sqrt(0.09 + 1) - 0.3
+    first = fem ? 0.7 * l : 0.7; last = fem ? 0.7 : 0.7 / l; exit !((y[2] - first) ^ 2 < 1e-6 && (y[NR] - last) ^ 2 < (fem ? 1e-12 : 1e-4)) }' let/history.csv ||
+    fail "$name: $(cut -d, -f3 let/history.csv | tr '\n' ' ')"
+  expect "beside the material, $method" $([ $method = fem ] && echo 0 || echo 2) "$talus" run let.yaml --out let --force --quiet --set method=$method \
+    --set measures.place.of.tracer[1]=1
+  [ $method = fem ] || says err.txt "no material carries the tracer: where it begins none is left"
+done
+rm -r let press
+
 # Constants that change with time: a block yields between floor and plate while its strength falls, what stands beside it becomes heavier and softer
 cat >ageing.yaml <<'END'
 kinematics: plane-strain

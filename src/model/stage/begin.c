@@ -61,26 +61,27 @@ static void place_tracer(Model *m, PetscInt p)
   }
 }
 
-static PetscErrorCode BeginTracers(Model *m, const Case *from, Diag *diag)
+PetscErrorCode BeginTracers(Model *m, const Case *from, Diag *diag)
 {
   char path[512];
 
   PetscFunctionBeginUser;
+  if (m->method->clouds) PetscFunctionReturn(0); /* there none begins: clouds.c */
   for (PetscInt p = 0; p < m->tracers->n; ++p) {
     const PetscInt k = m->tracers->body[p];
-    if (measure_before(m->c, k, from) >= 0 || m->tracers->cell[p] < 0) continue;
+    if ((from && measure_before(m->c, k, from) >= 0) || m->tracers->cell[p] < 0) continue;
     if (!m->method->restores_grid) place_tracer(m, p);
     if (m->method->carries(m->space, m->tracers, p)) continue;
     snprintf(path, sizeof path, "measures.%s.of.tracer", m->c->measures[k].name);
     diag_error(diag, path, "no material carries the tracer: where it begins none is left");
+    if (m->method->restores_grid) diag_hint(diag, "a place where the material is now, and not where it was drawn");
   }
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode BeginMeasures(Model *m, const Case *from, Diag *diag)
+PetscErrorCode BeginMeasures(Model *m, const Case *from)
 {
   PetscFunctionBeginUser;
-  PetscCall(BeginTracers(m, from, diag));
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
     if (measure_before(m->c, k, from) < 0) PetscCall(MeasureBegin(m, k));
   PetscFunctionReturn(0);

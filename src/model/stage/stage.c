@@ -274,7 +274,8 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool n
   if (next) PetscCall(CheckHeld(m, diag));
   if (next) PetscCall(AdviseHangs(m, diag));
   if (next) PetscCall(WallsCome(m, from, diag));
-  if (next) PetscCall(BeginMeasures(m, from, diag));
+  PetscCall(BeginTracers(m, next ? from : NULL, diag));
+  if (next) PetscCall(BeginMeasures(m, from));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   PetscCall(HoldImbalance(m, from, imbalance));

@@ -42,8 +42,11 @@ PetscErrorCode PutAside(Points *points, PetscInt dim, const PetscBool *take, Poi
 PetscErrorCode PutBack(Points **begun, const char reason[256], Points *points);
 /* Collective. Followers of measures in the tables, and those of measures that begin with the stage. */
 PetscErrorCode TakeTracers(Model *model, const Tables *tables, const Case *from, char reason[256]);
+/* Tracers of measures that begin with the stage, or with a run that goes on with the state of another one (from: NULL),
+ * begin in material; on the rank that holds them. */
+PetscErrorCode BeginTracers(Model *model, const Case *from, Diag *diag);
 /* Collective. Measures that begin with the stage begin where the model now stands. */
-PetscErrorCode BeginMeasures(Model *model, const Case *from, Diag *diag);
+PetscErrorCode BeginMeasures(Model *model, const Case *from);
 /* Have both the same law and elastic constants, so that states of one are states of the other? */
 PetscBool material_as_stiff(const Material *a, const Material *b);
 /* The stress of point p stays, in the state of another law or of other constants, and so do its place and its

@@ -9,10 +9,12 @@ static const SchemaWord front_words[] = {{"points", FRONT_POINTS, "the farthest 
 
 /* --- of --- */
 static const SchemaEntry of_entries[] = {
-  KEY("tracer", VECTOR, "m",
-      "a massless point carried by the material, out of the grid too, by its position at the start; nan from when no "
-      "node of the grid carries it any more",
-      AT(MeasureSpec, tracer), GIVEN(MeasureSpec, has_tracer)),
+  KEY(
+    "tracer", VECTOR, "m",
+    "a massless point carried by the material, out of the grid too, by its position at the start (of a later stage, or "
+    "a run with initial: {run: ..}: mpm by where the material is then, fem by where it was undeformed); nan from when "
+    "no node of the grid carries it any more",
+    AT(MeasureSpec, tracer), GIVEN(MeasureSpec, has_tracer)),
   KEY("body", REFERENCE, NULL, "a name from `bodies`", .target = "bodies", AT(MeasureSpec, body)),
   KEY("boundary", BOUNDARY, NULL, "an entry of `boundary`: its name, or its index counted from 0",
       AT(MeasureSpec, boundary)),
