@@ -332,6 +332,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   if (m->method->clouds) PetscCall(ModelWarnOfObstacles(m, diag));
   PetscCall(AdviseBeside(m, diag));
   if (!m->time) PetscCall(AdviseHangs(m, diag));
+  PetscCall(AdvisePassing(m, diag));
   if (!m->time) PetscCall(CheckHeld(m, diag)); /* later bodies and walls are elsewhere: ModelTake */
   if (m->scheme->inertia) PetscCall(InitialAcceleration(m));
   else PetscCall(InitialReactions(m));

@@ -389,9 +389,11 @@ apart "moved beside the body" "$beside" -- --set 'boundary[3]={on: {x: -1}, disp
 says out.txt "boundary[3]: moves 5 nodes, none beside material"
 for held in '{on: {x: -1}, fix: [x]}' '{on: {x: -1}, displacement: {x: 0}}' '{on: {x: [-1, 0]}, displacement: {x: 0.01}}' \
   '{on: {shape: {box: {min: [-1, 1.4], max: [4, 2]}}}, moves: true, displacement: {y: -0.01}}'; do
+apart "moved far beside the body" "$beside" -- --set 'boundary[3]={on: {x: -1}, displacement: {x: 0.4}}'
+lacks err.txt "material is moved by"
   apart "where material may come: $held" -- --set "boundary[3]=$held"
 done
-apart "dynamics" -- --set analysis='{type: dynamic, end: 0.1, step: 0.01}' --set 'boundary[3]={on: {x: -1}, velocity: {x: 0.01}}'
+apart "dynamics" -- --set analysis='{type: dynamic, end: 0.1, step: 0.01}' --set 'boundary[3]={on: {x: -1}, velocity: {x: 4}}'
 apart "held beside a mesh" "$beside" -- --set method=fem --set 'boundary[3]={on: {x: -1}, fix: [x]}'
 expect "a wall for it" 0 "$talus" run case.yaml --out run --force --quiet \
   --set 'boundary=[{on: {boundary: right}, fix: [x]}, {on: {boundary: bottom}, fix: [y]}]' \

@@ -268,7 +268,6 @@ PetscErrorCode ModelAdvise(const Model *m, Diag *diag)
   PetscCall(AdvisePulses(m, diag));
   PetscCall(AdviseWaves(m, diag));
   advise_down(m, diag);
-  PetscCall(AdvisePassing(m, diag));
   advise_late(m, diag);
   advise_dilatancy(m, diag);
   advise_cones(m, diag);

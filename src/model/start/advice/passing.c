@@ -79,8 +79,20 @@ static void advise_along(const Model *m, PetscInt k, PetscInt axis, const Extent
   diag_hint(diag, "a wall goes along: walls: [{shape: ..., contact: bonded or stick, motion: [...]}]; so does fem");
 }
 
+/* What is nowhere beside material moves none; bodies of later stages may come there. */
+static PetscErrorCode MovesNothing(const Model *m, PetscInt entry, PetscBool *nothing)
+{
+  PetscInt count[2];
+
+  PetscFunctionBeginUser;
+  PetscCall(ModelCountPrescribed(m, entry, count));
+  *nothing = (PetscBool)(count[1] == 0 && !m->c->staged && !m->c->boundary[entry].moves);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode AdvisePassing(const Model *m, Diag *diag)
 {
+  PetscBool nothing;
   Extent extent;
 
   PetscFunctionBeginUser;
@@ -89,6 +101,8 @@ PetscErrorCode AdvisePassing(const Model *m, Diag *diag)
   for (PetscInt k = 0; k < m->c->n_boundary; ++k) {
     const MotionSpec *motion = m->c->boundary + k;
     if (motion->absent || (motion->kind != MOTION_DISPLACEMENT && motion->kind != MOTION_VELOCITY)) continue;
+    PetscCall(MovesNothing(m, k, &nothing));
+    if (nothing) continue;
     for (PetscInt d = 0; d < m->dim; ++d)
       if (motion->component[d]) advise_along(m, k, d, &extent, diag);
   }
