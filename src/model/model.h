@@ -261,8 +261,9 @@ PetscErrorCode ModelEquilibrate(Model *model, StepReport *report);
 PetscErrorCode ModelSetBodyForce(Model *model, BodyForce force, void *context);
 /* Collective. Nodes that an entry of `boundary` takes, and those of them beside material: start/advice/beside.c. */
 PetscErrorCode ModelCountPrescribed(const Model *model, PetscInt entry, PetscInt count[2]);
-/* Warn of a case in which nothing happens, once all that its caller gives is known: start/advice/still.c. */
-void model_advise_still(const Model *model, Diag *diag);
+/* Warn of a case in none of whose stages anything happens, once all that its caller gives is known:
+ * start/advice/still.c. */
+void model_advise_still(const Model *model, const Case *whole, Diag *diag);
 /* Collective. Factors of a load of the case that vary from place to place, NULL for none; likewise. */
 PetscErrorCode ModelSetLoadFactors(Model *model, PetscInt load, LoadFactors ask, void *context);
 

@@ -387,7 +387,7 @@ static PetscErrorCode ModelsCreate(Run *r, const RunOptions *options, Diag *diag
   PetscCall(ModelCreate(r->comm, r->c, diag, &r->model));
   if (r->model && options->body_force)
     PetscCall(ModelSetBodyForce(r->model, options->body_force, options->body_force_context));
-  if (r->model) model_advise_still(r->model, diag);
+  if (r->model) model_advise_still(r->model, r->whole, diag);
   for (PetscInt k = 0; r->model && options->load_factors && k < r->c->n_loads; ++k)
     if (options->load_factors[k].ask)
       PetscCall(ModelSetLoadFactors(r->model, k, options->load_factors[k].ask, options->load_factors[k].context));

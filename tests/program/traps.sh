@@ -348,6 +348,8 @@ boundary:
 END
 warned "nothing that acts" "nothing acts on what is here" 'weight is `loads: {gravity: [0, -9.81]}`' --
 warned "a velocity" -- --set 'bodies[0].velocity=[0, 1]'
+warned "weight in a later stage" -- --set 'stages=[{name: rest}, {name: fall, loads: {gravity: [0, -9.81]}}]'
+warned "nothing in any stage" "nothing acts on what is here" -- --set 'stages=[{name: rest}, {name: more}]'
 warned "weight" -- --set 'loads={gravity: [0, -9.81]}'
 warned "weight upwards" "gravity points along +y, upwards, where nothing is held" 'downwards is `gravity: [0, -9.81]`' -- \
   --set 'loads={gravity: [0, 9.81]}'
@@ -387,10 +389,10 @@ beside="warning: no material is beside the 5 nodes that boundary[3] takes: what 
 apart() { warned "$@" --set 'boundary[2]={on: {x: [3, 4]}, displacement: {x: 0}}'; }
 apart "moved beside the body" "$beside" -- --set 'boundary[3]={on: {x: -1}, displacement: {x: 0.01}}'
 says out.txt "boundary[3]: moves 5 nodes, none beside material"
-for held in '{on: {x: -1}, fix: [x]}' '{on: {x: -1}, displacement: {x: 0}}' '{on: {x: [-1, 0]}, displacement: {x: 0.01}}' \
-  '{on: {shape: {box: {min: [-1, 1.4], max: [4, 2]}}}, moves: true, displacement: {y: -0.01}}'; do
 apart "moved far beside the body" "$beside" -- --set 'boundary[3]={on: {x: -1}, displacement: {x: 0.4}}'
 lacks err.txt "material is moved by"
+for held in '{on: {x: -1}, fix: [x]}' '{on: {x: -1}, displacement: {x: 0}}' '{on: {x: [-1, 0]}, displacement: {x: 0.01}}' \
+  '{on: {shape: {box: {min: [-1, 1.4], max: [4, 2]}}}, moves: true, displacement: {y: -0.01}}'; do
   apart "where material may come: $held" -- --set "boundary[3]=$held"
 done
 apart "dynamics" -- --set analysis='{type: dynamic, end: 0.1, step: 0.01}' --set 'boundary[3]={on: {x: -1}, velocity: {x: 4}}'

@@ -400,14 +400,14 @@ static PetscErrorCode ReportInterfaces(const Model *m, FILE *out)
 }
 
 /* One model: of a case, or of a stage, from what is seeded. */
-static PetscErrorCode CheckOne(MPI_Comm comm, const Case *c, Diag *diag, FILE *out)
+static PetscErrorCode CheckOne(MPI_Comm comm, const Case *whole, const Case *c, Diag *diag, FILE *out)
 {
   Imbalance unsaid;
   Model *m;
 
   PetscFunctionBeginUser;
   PetscCall(ModelCreate(comm, c, diag, &m));
-  if (m) model_advise_still(m, diag);
+  if (m) model_advise_still(m, whole, diag);
   if (!m) PetscFunctionReturn(0);
   if (c->spec) say(m, out, "# stage %d: %s\n", (int)c->stage + 1, c->spec->name);
   PetscCall(ReportSizes(m, diag, out));
@@ -430,7 +430,7 @@ PetscErrorCode CheckModel(MPI_Comm comm, const Case *c, Diag *diag, FILE *out)
     if (c->n_stages) c->stage_case[k]->grid.trusted = c->grid.trusted;
     if (c->n_stages) diag_of_stage(diag, k, c->stages[k].name);
     if (k > 0) PetscCall(RenameCheck(case_stage(c, k), case_stage(c, k - 1), PETSC_TRUE, diag));
-    PetscCall(CheckOne(comm, case_stage(c, k), diag, out));
+    PetscCall(CheckOne(comm, c, case_stage(c, k), diag, out));
     PetscCall(DiagReduce(comm, diag, &errors));
   }
   diag_of_stage(diag, -1, NULL);

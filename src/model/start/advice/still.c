@@ -3,11 +3,9 @@
 
 static PetscBool is_zero(const PetscReal v[3]) { return (PetscBool)(v[0] == 0 && v[1] == 0 && v[2] == 0); }
 
-static PetscBool something_acts(const Model *m)
+static PetscBool something_acts(const Case *c)
 {
-  const Case *c = m->c;
-  PetscBool acts = (PetscBool)(m->body_force || c->stage > 0 || c->initial.run || case_acting_loads(c) > 0);
-  acts |= !is_zero(c->gravity);
+  PetscBool acts = (PetscBool)(c->initial.run || case_acting_loads(c) > 0 || !is_zero(c->gravity));
   for (PetscInt k = 0; k < c->n_boundary; ++k) acts |= c->boundary[k].kind != MOTION_FIXED;
   for (PetscInt k = 0; k < c->n_walls; ++k) acts |= c->walls[k].n_motions || c->walls[k].has_mass;
   for (PetscInt k = 0; k < c->n_materials; ++k) acts |= c->materials[k].n_amplitudes > 0;
@@ -16,9 +14,11 @@ static PetscBool something_acts(const Model *m)
   return acts;
 }
 
-void model_advise_still(const Model *m, Diag *diag)
+void model_advise_still(const Model *m, const Case *whole, Diag *diag)
 {
-  if (something_acts(m)) return;
+  PetscBool acts = (PetscBool)(m->body_force != NULL);
+  for (PetscInt k = 0; k < case_stages(whole); ++k) acts |= something_acts(case_stage(whole, k));
+  if (acts || m->c->stage > 0) return;
   diag_warning(diag, "loads",
                "nothing acts on what is here: there is no gravity, load, prescribed motion, velocity or stress at the "
                "start");
