@@ -108,6 +108,9 @@ says err.txt "there is nothing left to do"
 rm -r cut && cp -r whole cut
 expect "another material" 2 "$talus" run --resume cut --set materials.rubber.young=1e6
 says err.txt "a resumed run cannot change materials.rubber.young" "checkpoint, newton"
+expect "another material of no run" 2 "$talus" run --resume nowhere --set materials.rubber.young=1e6
+says err.txt "there is no run to resume in 'nowhere'"
+lacks err.txt "cannot change"
 expect "with a case" 2 "$talus" run block.yaml --resume cut
 says err.txt "--resume goes on in DIR"
 expect "with a directory" 2 "$talus" run --resume cut --out other

@@ -142,7 +142,15 @@ static PetscErrorCode Compare(const char *file, const char *out)
   PetscFunctionReturn(0);
 }
 
-/* CASE or --resume, and what may stand beside it; *ok is false after a complaint. */
+/* Is there anything to resume in the folder? */
+static PetscBool has_run(const char *folder)
+{
+  char file[PETSC_MAX_PATH_LEN];
+  PetscSNPrintf(file, sizeof file, "%s/case.yaml", folder);
+  return (PetscBool)!access(file, R_OK);
+}
+
+/* CASE or --resume, and what may stand beside it; *ok is false after a complaint. That there is no run is told later. */
 static PetscErrorCode CheckArguments(const CliArguments *a, PetscInt n_set, const char *const *set, PetscBool *ok,
                                      int *exit_code)
 {
@@ -162,7 +170,7 @@ static PetscErrorCode CheckArguments(const CliArguments *a, PetscInt n_set, cons
                             "--resume goes on in DIR with the case that is there: CASE, --out and --force make no "
                             "sense beside it"));
   else *ok = PETSC_TRUE;
-  for (PetscInt i = 0; folder && *ok && i < n_set; ++i) {
+  for (PetscInt i = 0; folder && has_run(folder) && *ok && i < n_set; ++i) {
     if (may_change_on_resume(set[i]) || says_where(set[i], &inputs)) continue;
     PetscCall(SayWhatMayChange(set[i], exit_code));
     *ok = PETSC_FALSE;
@@ -212,7 +220,7 @@ static PetscErrorCode ReadAndRun(const CliArguments *a, PetscInt n_set, const ch
   PetscFunctionBeginUser;
   choose_files(a, file, out);
   PetscCall(DiagCreate(&diag));
-  if (cli_flag(a, "resume") && access(file, R_OK)) {
+  if (cli_flag(a, "resume") && !has_run(out)) {
     diag_error(diag, NULL, "there is no run to resume in '%s': %s: %s", out, file, strerror(errno));
     diag_hint(diag, "a run that was cut off before it began is started again, with --force");
   } else PetscCall(CaseRead(PETSC_COMM_WORLD, file, n_set, set, diag, &c));
