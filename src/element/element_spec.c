@@ -250,7 +250,7 @@ static PetscErrorCode ReadCase(const ElementOptions *o, Diag *diag, ElementSpec 
     diag_at(diag, DIAG_ERROR, &whole, "this file tells its path by itself: --test is for the material of a case");
     diag_hint(diag, "leave --test out, and what belongs to it");
   }
-  if (!diag_errors(diag)) PetscCall(CaseRead(PETSC_COMM_SELF, file, o->n_set, o->set, diag, &s->c));
+  if (!diag_errors(diag)) PetscCall(CaseReadToTest(file, o->n_set, o->set, diag, &s->c));
   if (s->c) PetscCall(ChooseMaterial(o, diag, s));
   PetscFunctionReturn(0);
 }

@@ -427,8 +427,9 @@ static PetscErrorCode SpellOut(YamlDocument *document)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CaseReadText(const char *file, size_t size, const char *text, PetscInt n_set, const char *const *set,
-                            Diag *diag, Case **c)
+/* idle: is it told what has no effect in a run? */
+static PetscErrorCode ReadText(const char *file, size_t size, const char *text, PetscInt n_set, const char *const *set,
+                               PetscBool idle, Diag *diag, Case **c)
 {
   const PetscInt before = diag_errors(diag);
   YamlDocument *document;
@@ -446,12 +447,13 @@ PetscErrorCode CaseReadText(const char *file, size_t size, const char *text, Pet
   if (document->root) PetscCall(ReadDocument(file, document, diag, NULL, 0, c));
   if (*c) check_beyond(NULL, *c, diag);
   if (diag_errors(diag) == before && *c && (*c)->n_stages) PetscCall(ReadStages(file, document, diag, *c));
-  if (diag_errors(diag) == before && *c) PetscCall(TellIdleKeys(document, *c, diag));
+  if (idle && diag_errors(diag) == before && *c) PetscCall(TellIdleKeys(document, *c, diag));
   if (diag_errors(diag) > before) PetscCall(CaseDestroy(c));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c)
+static PetscErrorCode ReadFile(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, PetscBool idle,
+                               Diag *diag, Case **c)
 {
   char *bytes, reason[256];
   size_t size = 0;
@@ -462,7 +464,29 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const c
   if (reason[0]) {
     const DiagPlace place = {.file = file, .width = 1};
     diag_at(diag, DIAG_ERROR, &place, "%s", reason);
-  } else PetscCall(CaseReadText(file, size, bytes, n_set, set, diag, c));
+  } else PetscCall(ReadText(file, size, bytes, n_set, set, idle, diag, c));
   PetscCall(PetscFree(bytes));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CaseReadText(const char *file, size_t size, const char *text, PetscInt n_set, const char *const *set,
+                            Diag *diag, Case **c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReadText(file, size, text, n_set, set, PETSC_TRUE, diag, c));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReadFile(comm, file, n_set, set, PETSC_TRUE, diag, c));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode CaseReadToTest(const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c)
+{
+  PetscFunctionBeginUser;
+  PetscCall(ReadFile(PETSC_COMM_SELF, file, n_set, set, PETSC_FALSE, diag, c));
   PetscFunctionReturn(0);
 }

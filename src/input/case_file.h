@@ -8,6 +8,9 @@
  * "path.to.key=value" of --set, applied before validation. On any mistake *c stays NULL and diag
  * says what is wrong (its resolver is installed and lives until DiagDestroy). */
 PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c);
+/* Of this rank. The same of a case that is not run, one of whose materials is tested: what would have no effect in a
+ * run is not told. */
+PetscErrorCode CaseReadToTest(const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c);
 /* The same of a text that all ranks have: as if it stood in a file of this name, from whose folder
  * other files are looked for. */
 PetscErrorCode CaseReadText(const char *file, size_t size, const char *text, PetscInt n_set, const char *const *set,
