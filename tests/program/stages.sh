@@ -407,6 +407,20 @@ expect "rest with nodes that follow" 0 "$talus" run rests.yaml --out rests --for
 awk -F, 'NR > 1 && $3 == 1 {top = $4; force = $5}
   NR > 1 && $3 == 2 {n += 1; d = ($4 - top) / top; f = ($5 - force) / force; if (d * d > 1e-16 || f * f > 1e-14) bad = 1}
   END {exit !(n > 4 && !bad && force > 19221 && force < 19222)}' rests/history.csv || fail "$name: it jerks"
+# A wall that comes where a boundary lets go bears at once what that bore, in statics and in dynamics, and holds by friction what that lets it.
+sed -e 's/^boundary: \[/&{name: base, on: {y: 0.25}, fix: [y]}, /' -e 's/contact: stick}/contact: friction, friction: 0.3, absent: true}/' \
+  -e 's/waits, .*/swaps, boundary: [{name: base, absent: true}, {name: left, absent: true}], walls: [{name: floor, absent: false}]}/' rests.yaml >swaps.yaml
+swap() { # name, what the force may be off by, options
+  what=$1 off=$2 && shift 2 && turn
+  expect "a wall for a boundary, $what on $ranks" 0 on_ranks $ranks "$talus" run swaps.yaml --out swaps --force --quiet "$@"
+  awk -F, -v off=$off 'NR > 1 && $3 == 2 {n += 1; f = $5 / 19620 - 1; if (f * f > off * off) bad = 1} END {exit !(n > 3 && !bad)}' swaps/history.csv ||
+    fail "$name: $(grep -m 1 '^[^,]*,[^,]*,2,' swaps/history.csv)"
+}
+side='loads.tractions=[{name: side, on: {body: block, x: 1}, value: [-5000, 0], amplitude: [[0, 0], [0.25, 1], [1, 1]]}]'
+swap fem 1e-6 "--set=stages[1].$side"
+set -- --set method=mpm --set 'grid.box={min: [0, 0], max: [2, 1.5]}' --set 'basis={cell: {}}' --set analysis.steps=8
+swap mpm 1e-6 "$@"
+swap dynamics 1e-3 "$@" --set 'stages[1].analysis={type: dynamic, end: 0.1, step: 0.02}' --set 'stages[1].boundary=[{name: base, absent: true}]'
 # And a footing of 600 kg upon it, a wall with mass.
 sed 's/contact: stick}\]/contact: stick}, {name: footing, shape: {box: {min: [0.2, 1.25], max: [0.8, 1.5]}}, friction: 0.5, mass: {mass: 600, free: [y]}}]/
   s/^output/  speed: {wall_velocity: y, of: {wall: footing}}\n&/' rests.yaml >footing.yaml

@@ -85,6 +85,20 @@ static PetscErrorCode HoldReactions(const Model *m, const Case *from, const Pets
   PetscFunctionReturn(0);
 }
 
+/* Once contact has taken over what it can of it. */
+static PetscErrorCode Remains(Model *m, const Case *from, PetscReal *residual)
+{
+  PetscBool taken;
+
+  PetscFunctionBeginUser;
+  PetscCall(Residual(m, residual));
+  PetscCall(ContactTakesOver(m, from, residual, &taken));
+  if (!taken) PetscFunctionReturn(0);
+  PetscCall(Residual(m, residual));
+  PetscCall(ContactBegin(m, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
 void keep_free(const Model *m, PetscReal *values)
 {
   frames_turn(&m->boundary->frames, m->dim, values);
@@ -102,7 +116,7 @@ PetscErrorCode HoldImbalance(Model *m, const Case *from, Imbalance *imbalance)
   PetscCall(PetscMalloc1(dofs, &residual));
   if (held) PetscCall(PetscArrayzero(held, dofs)); /* that of the stage before is over */
   mark_fixed(m);
-  PetscCall(Residual(m, residual));
+  PetscCall(Remains(m, from, residual));
   PetscCall(PetscMalloc1(dofs, &lacks));
   PetscCall(PetscArraycpy(lacks, residual, dofs));
   keep_free(m, residual);

@@ -72,3 +72,6 @@ PetscErrorCode BodiesBringMotion(Model *model, const Case *from);
 void keep_free(const Model *model, PetscReal *values);
 /* Collective. What is out of balance now; where the case releases it over time, it is held. */
 PetscErrorCode HoldImbalance(Model *model, const Case *from, Imbalance *imbalance);
+/* taken_over.c. Collective. Contact points that touch and bear nothing bear from now on what free nodes lack, as far as
+ * their law does. residual: n_nodes x dim, N, of owned nodes; taken: does it count no more as it is? */
+PetscErrorCode ContactTakesOver(const Model *model, const Case *from, const PetscReal *residual, PetscBool *taken);

@@ -187,6 +187,8 @@ PetscErrorCode ContactAnchor(Contact *contact, const NodalScene *scene, const Wa
 /* Its law; then its section, m2, and what adheres on that. */
 void contact_take_law(const Contact *contact, const NodalScene *scene, ContactPoint *c);
 void contact_take_section(const Contact *contact, const NodalScene *scene, PetscReal section, ContactPoint *c);
+/* It begins with the force, N, or what of it its law bears; open where that is nothing. */
+void contact_press(ContactPoint *c, const PetscReal force[3]);
 /* What touches at the start is pressed by the stress that the material was given; of carriers that kept nothing. */
 void contact_start(const NodalScene *scene, ContactPoint *c);
 /* Is a contact point with this gap at the start of the step none? Says whether it touches. */

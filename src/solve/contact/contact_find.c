@@ -170,21 +170,27 @@ static void force_of_stress(const NodalScene *scene, const ContactPoint *c, Pets
   for (int d = 0; d < 3; ++d) f[d] *= c->section / J;
 }
 
+void contact_press(ContactPoint *c, const PetscReal force[3])
+{
+  const PetscBool rubs = c->law.kind != CONTACT_FRICTIONLESS, bonded = c->law.kind == CONTACT_BONDED;
+  PetscReal f[3], pressure = 0, square = 0;
+  for (int d = 0; d < 3; ++d) pressure += force[d] * c->normal[d];
+  const PetscBool bears = (PetscBool)(pressure > 0 || bonded);
+  for (int d = 0; d < 3; ++d) f[d] = force[d] - pressure * c->normal[d], square += f[d] * f[d];
+  const PetscReal most = c->law.kind == CONTACT_FRICTION ? c->law.friction * pressure : CONTACT_STICKING * pressure;
+  const PetscReal part = bonded ? 1 : rubs && square > 0 ? PetscMin(1, most / PetscSqrtReal(square)) : 0;
+  for (int d = 0; d < 3; ++d) c->last[d] = bears ? pressure * c->normal[d] + part * f[d] : 0;
+  c->before = c->state = !bears ? CONTACT_OPEN : rubs ? CONTACT_STICKS : CONTACT_SLIDES;
+  c->stays = bears;
+}
+
 void contact_start(const NodalScene *scene, ContactPoint *c)
 {
   const BodySpec *body = scene->c->bodies + scene->points->body[c->owner];
-  const PetscBool rubs = c->law.kind != CONTACT_FRICTIONLESS;
-  PetscReal f[3], pressure = 0, square = 0;
+  PetscReal f[3];
   if (!scene->first || !c->touches || c->before != CONTACT_OPEN || !body_has_stress(body)) return;
   force_of_stress(scene, c, f);
-  for (int d = 0; d < 3; ++d) pressure += f[d] * c->normal[d];
-  if (pressure <= 0) return;
-  for (int d = 0; d < 3; ++d) f[d] -= pressure * c->normal[d], square += f[d] * f[d];
-  const PetscReal most = c->law.kind == CONTACT_FRICTION ? c->law.friction * pressure : CONTACT_STICKING * pressure;
-  const PetscReal part = rubs && square > 0 ? PetscMin(1, most / PetscSqrtReal(square)) : 0;
-  for (int d = 0; d < 3; ++d) c->last[d] = pressure * c->normal[d] + part * f[d];
-  c->before = c->state = rubs ? CONTACT_STICKS : CONTACT_SLIDES;
-  c->stays = 1;
+  contact_press(c, f);
 }
 
 PetscBool contact_meets_body(const Case *c, PetscInt k, PetscInt body)

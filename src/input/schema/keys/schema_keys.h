@@ -29,11 +29,12 @@
 #define SPELLED .spelled = PETSC_TRUE
 #define STAGED .staged = PETSC_TRUE
 /* Of a stage, and of a case that starts from another run. */
-#define RELEASE(type, ...)                                                                                         \
-  KEY("release", NUMBER, "s",                                                                                      \
-      "what is out of balance when it begins (a body is gone, a strength has fallen) is held by forces on nodes, " \
-      "which fade in proportion to time over so long; 0: at once",                                                 \
-      .note = "statics: all of it; dynamics: 0", AT_LEAST(0), AT(type, release), GIVEN(type, has_release),         \
+#define RELEASE(type, ...)                                                                                            \
+  KEY("release", NUMBER, "s",                                                                                         \
+      "what is out of balance when it begins (a body is gone, a strength has fallen) is held by forces on nodes, "    \
+      "which fade in proportion to time over so long; 0: at once. What walls and interfaces that come there bear is " \
+      "theirs from the start",                                                                                        \
+      .note = "statics: all of it; dynamics: 0", AT_LEAST(0), AT(type, release), GIVEN(type, has_release),            \
       __VA_ARGS__)
 
 /* Tables that others name. */
