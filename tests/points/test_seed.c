@@ -570,6 +570,33 @@ static void surfaces_are_shared_out(void **state)
   free_all(t, grid, NULL);
 }
 
+/* A hole whose crown touches a line of the grid: below that the ground has long and thin parts, whose middles lie where
+ * they are thickest. Joined to one of them, the surface of two pressed half as far again from the crown as it does: the
+ * moment about it of a pressure on the quarter of a metre beside it is half of a square, within a fifth. */
+static void thin_parts_press_where_they_are(void **state)
+{
+  Shape parts[2] = {{.kind = SHAPE_BOX, .max = {3, 2}}, {.kind = SHAPE_BALL, .centre = {1.5, 0.25}, .radius = 1}};
+  PetscReal moment = 0;
+  (void)state;
+  TestCase *t = test_case(CELL_QUADRILATERAL, 12, 8, 4);
+  Grid *grid = make_grid(PETSC_COMM_WORLD, &t->c);
+  t->body[0].has_shape = PETSC_TRUE;
+  t->body[0].points_per_cell = 4;
+  t->body[0].shape = (Shape){.kind = SHAPE_DIFFERENCE, .n_children = 2, .children = parts};
+  Points *points = make_points(t);
+  points->components[POINT_REACH] = 1;
+  points->components[POINT_FACE] = points->components[POINT_CORNER] = grid->dim;
+  seed_into(t, grid, points);
+  for (PetscInt p = 0; p < points->n; ++p) {
+    const PetscReal *x = point_real(points, POINT_X, p);
+    const PetscBool beside = x[0] > 1.5 && x[0] < 1.75 && x[1] > 1 && x[1] < 1.25;
+    moment += beside ? -point_real(points, POINT_FACE, p)[1] * (x[0] - 1.5) : 0;
+  }
+  const PetscReal wanted = 0.25 * 0.25 / 2;
+  CHECK_CLOSE(sum_over_ranks(moment), wanted, 0.2 * wanted);
+  free_all(t, grid, points);
+}
+
 /* Where its surface follows the cells it is seeded as ever. */
 static void aligned_shape_is_the_same(void **state)
 {
@@ -601,6 +628,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(mirrors_do_not_matter),
     cmocka_unit_test(planes_are_exact),
     cmocka_unit_test(surfaces_are_shared_out),
+    cmocka_unit_test(thin_parts_press_where_they_are),
     cmocka_unit_test(aligned_shape_is_the_same),
     cmocka_unit_test(every_rule_fills_the_volume),
     cmocka_unit_test(method_chooses_the_weights),

@@ -1,6 +1,7 @@
 #include "points/seed/seed.h"
 
-#define SLIVER 0.1 /* of what a point has in a whole cell: less joins its neighbour */
+#define SLIVER 0.1 /* of what a point has in a whole cell: less joins its neighbour, */
+#define LEVER 0.2  /* but not if that takes the surface of the cell's parts aside by so much of half of a part's side */
 
 static PetscBool is_sliver(const SeedPart *part, PetscInt n)
 {
@@ -28,6 +29,31 @@ static PetscInt neighbours_of(const SeedPart *part, PetscInt n, PetscInt dim, Pe
   return n_near;
 }
 
+static PetscReal square_of(const PetscReal *a, PetscInt dim)
+{
+  PetscReal square = 0;
+  for (PetscInt d = 0; d < dim; ++d) square += PetscSqr(a[d]);
+  return square;
+}
+
+/* Would a pressure on its surface act beside where it does if the part joined the n_near others? The middle of a thin
+ * one lies where it is thickest, and that of its neighbour farther still along the surface. */
+static PetscBool goes_aside(const SeedPart *part, PetscInt n, PetscInt dim, PetscInt of, const PetscInt *near,
+                            PetscInt n_near)
+{
+  const PetscReal *face = part[of].face, square = square_of(face, dim);
+  PetscReal way[3], ahead = 0, all = 0;
+  if (square == 0) return PETSC_FALSE;
+  for (PetscInt q = 0; q < n; ++q) all += PetscSqrtReal(square_of(part[q].face, dim));
+  for (PetscInt d = 0; d < dim; ++d) {
+    way[d] = -part[of].xi[d];
+    for (PetscInt k = 0; k < n_near; ++k) way[d] += part[near[k]].xi[d] / (PetscReal)n_near;
+    ahead += way[d] * face[d];
+  }
+  const PetscReal aside = PetscSqrtReal(PetscMax(0, square_of(way, dim) * square - PetscSqr(ahead)));
+  return (PetscBool)(aside > LEVER * PetscPowReal((PetscReal)n, -1 / (PetscReal)dim) * all);
+}
+
 /* A share of what `from` was before it goes to `to`, with its moment. */
 static void give(const SeedPart *from, PetscReal share, PetscInt dim, SeedPart *to)
 {
@@ -50,11 +76,15 @@ void seed_join_slivers(SeedPart *part, PetscInt n, PetscInt dim)
   for (PetscInt q = 0; q < n; ++q) before[q] = part[q];
   for (PetscInt q = 0; q < n; ++q) {
     if (!is_sliver(before + q, n)) continue;
-    const PetscInt n_near = neighbours_of(before, n, dim, q, near);
+    PetscInt n_near = neighbours_of(before, n, dim, q, near);
+    if (!n_near && first < 0) {
+      first = q;
+      continue;
+    }
+    if (!n_near) near[n_near++] = first;
+    if (goes_aside(before, n, dim, q, near, n_near)) continue;
     for (PetscInt k = 0; k < n_near; ++k) give(before + q, 1 / (PetscReal)n_near, dim, part + near[k]);
-    if (!n_near && first >= 0) give(before + q, 1, dim, part + first);
-    if (n_near || first >= 0) part[q].share = 0;
-    else first = q;
+    part[q].share = 0;
   }
 }
 
