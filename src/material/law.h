@@ -208,6 +208,8 @@ void materials_step(PetscInt n, Material *materials, PetscReal time, PetscReal d
 PetscReal material_passed(const Material *material, const PetscReal *before, const PetscReal *state);
 /* lambda + 2 mu, Pa, of a mixed formulation, too: infinite where incompressible. */
 PetscReal material_confined(const Material *material);
+/* The same with a Poisson's ratio of 0.3 at most: what opposes a change of shape, however little volumes change. */
+PetscReal material_sheared(const Material *material);
 /* Can any of them lose its stiffness? */
 PetscBool materials_yield(PetscInt n, const Material *materials);
 /* The same before there are any, of the laws that are known. */

@@ -219,6 +219,8 @@ PetscReal material_passed(const Material *m, const PetscReal *before, const Pets
   return m->law->passed ? m->law->passed(m->parameters, before, state) : 0.0;
 }
 
+PetscReal material_sheared(const Material *m) { return wave_modulus(&m->elastic, PETSC_TRUE); }
+
 PetscReal material_confined(const Material *m) { return m->elastic.bulk + 4.0 / 3.0 * m->elastic.shear; }
 
 PetscBool material_symmetric(const Material *m, PetscBool strength_varies)

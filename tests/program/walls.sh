@@ -401,4 +401,25 @@ END
 expect "leaps" 0 "$talus" run leaps.yaml --out leaps --quiet
 awk -F, 'NR > 1 && $1 > 1.05 && ($3 < 2997 || $3 > 3003 || ($4 - 0.1 * ($1 - 1)) ^ 2 > 1e-8) { bad = 1 } END { exit bad || ($4 - 0.1) ^ 2 > 1e-8 }' leaps/history.csv || fail "$name: $(cat leaps/history.csv)"
 
+# --- a wall that is pushed against sand on a floor that rubs: Rankine's K of 30 degrees is 3, and the floor is as rough as sand ---
+cat >passive.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+formulation: mean-dilatation
+analysis: {type: static, steps: 10}
+grid: {box: {min: [-0.5, 0], max: [4, 1.5]}, size: 0.125}
+bodies: [{name: sand, shape: {box: {min: [0, 0], max: [4, 1]}}, points_per_cell: 4, material: sand, k0: 0.5}]
+materials:
+  sand: {law: mohr-coulomb, density: 2000, young: 2e7, poisson: 0.3, friction_angle: 30, dilatancy_angle: 0, cohesion: 30}
+boundary: [{on: {boundary: right}, fix: [x]}]
+walls:
+  - {name: floor, friction: 0.577, shape: {half-space: {point: [0, 0], normal: [0, 1]}}}
+  - {name: wall, shape: {half-space: {point: [0, 0], normal: [1, 0]}}, motion: [{displacement: {x: 0.02}}]}
+loads: {gravity: [0, -10]}
+measures: {force: {wall_force: x, of: {wall: wall}}}
+END
+turn
+expect "passive" 0 on_ranks $ranks "$talus" run passive.yaml --out passive --quiet
+awk -F, 'END { exit ($3 / 1e4 - 3) ^ 2 > 0.05 ^ 2 }' passive/history.csv || fail "$name: $(tail -n 1 passive/history.csv)"
+
 finish

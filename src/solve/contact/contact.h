@@ -43,7 +43,8 @@ typedef struct {
   PetscReal cover;     /* the share of it that the other body stands before; 1: a wall */
   /* of its material, and of that of the other body (0: a wall), Pa, kg/m3 */
   PetscReal modulus[2], density[2];
-  PetscReal stiffer; /* by so much does it oppose a change of volume more than `modulus` says */
+  PetscReal stiffer; /* by so much does it oppose a change of volume more than `modulus` says, */
+  PetscReal softer;  /* and so much of it a change of shape */
   PetscReal open;    /* gap at the start of the step, m */
   ContactHeld held;
   PetscReal behind, passed; /* by how much the wall has passed it before the step and at the last assembly, m, */

@@ -109,6 +109,7 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
     contact_reach_left(scene, p->owner, scene->c->interfaces[interface].contact, kept, pair->normal, pair->gap);
   c->modulus[0] = p->modulus, c->density[0] = p->density;
   c->stiffer = PetscMax(p->stiffer, pair->other->stiffer);
+  c->softer = PetscMin(p->softer, pair->other->softer);
   c->modulus[1] = pair->other->modulus, c->density[1] = pair->other->density;
   contact_take_law(s, scene, c);
   contact_remember(c, s->dim, kept, pair->normal);

@@ -279,6 +279,7 @@ static PetscErrorCode MeetSide(Contact *s, const NodalScene *scene, PetscInt g, 
   c->reach = reach;
   c->modulus[0] = material->wave_modulus, c->density[0] = material->density;
   c->stiffer = material_confined(material) / material->wave_modulus;
+  c->softer = material_sheared(material) / material->wave_modulus;
   contact_take_law(s, scene, c);
   contact_remember(c, dim, kept, place.normal);
   c->edge = is_edge(&place);

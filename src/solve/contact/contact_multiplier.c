@@ -127,7 +127,7 @@ void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, C
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     const PetscReal cell = c->section * stiffness_of(c, s->length, inertia);
     c->law.penalty = STIFFER * cell;
-    c->law.along = (share.flows && c->law.kind == CONTACT_FRICTION ? ALONG_FLOWS : STIFFER) * cell;
+    c->law.along = (share.yields && c->law.kind == CONTACT_FRICTION ? ALONG_FLOWS : STIFFER) * c->softer * cell;
     c->stiffest = stiffest_of(s, c);
     c->ahead = c->reach;
     c->left = 0;

@@ -26,7 +26,7 @@ typedef struct {
   PetscReal own;     /* that of its part, cut or not, m */
   PetscReal face[3]; /* of the body's surface, as a vector outwards, m2 (in the plane m); 0: it knows of none */
   PetscReal modulus, density; /* of its material, Pa, kg/m3 */
-  PetscReal stiffer;          /* see ContactPoint */
+  PetscReal stiffer, softer;  /* see ContactPoint */
   PetscInt row[2];            /* where it stands among those of its body: see surface_sort */
   PetscInt first_carrier, n;  /* its nodes, of Surface.carrier; n = 0: not asked for */
 } SurfacePoint;

@@ -72,6 +72,7 @@ static void describe(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
                       .first = points->real[POINT_REACH][p],
                       .modulus = material->wave_modulus,
                       .stiffer = material_confined(material) / material->wave_modulus,
+                      .softer = material_sheared(material) / material->wave_modulus,
                       .density = material->density};
   for (PetscInt d = 0; d < points->dim; ++d) s->x[d] = x[d], s->corner[d] = point_real(points, POINT_CORNER, p)[d];
   point_F(points, p, s->F);
