@@ -35,13 +35,20 @@ static PetscBool gives_stress(const Case *c)
   return PETSC_FALSE;
 }
 
+/* By what the lack of balance is measured (LackOfBalance). */
+static const char *measured_by(const Case *c)
+{
+  const PetscBool weighs = (PetscBool)(c->gravity[0] != 0 || c->gravity[1] != 0 || c->gravity[2] != 0);
+  return weighs ? "the weight" : "the forces that act";
+}
+
 static PetscErrorCode TellLack(const Run *r, PetscReal lacked)
 {
   PetscFunctionBeginUser;
   if (lacked <= MORE_THAN_NONE || !case_has_stress(r->c)) PetscFunctionReturn(0);
-  PetscCall(RunDirLog(
-    r->dir, "warning = the initial stress leaves %.3g of the weight out of balance, more than no stress would%s",
-    (double)lacked, gives_stress(r->c) ? ": compression is negative" : ""));
+  PetscCall(RunDirLog(r->dir,
+                      "warning = the initial stress leaves %.3g of %s out of balance, more than no stress would%s",
+                      (double)lacked, measured_by(r->c), gives_stress(r->c) ? ": compression is negative" : ""));
   PetscFunctionReturn(0);
 }
 
@@ -51,12 +58,13 @@ static PetscErrorCode TellNone(const Run *r)
   const PetscReal lacked = r->model->initial.lacked; /* nan: not known where constraints hold a cloud */
   const PetscBool moves = (PetscBool) !(lacked <= ROUND_OFF), unasked = r->model->method->clouds;
   const PetscBool warns = (PetscBool)(unasked && case_is_static(&r->c->analysis) && !(lacked <= OF_CLOUDS));
-  char what[80] = "what is out of balance";
+  char what[128] = "what is out of balance";
 
   PetscFunctionBeginUser;
   if (!case_has_stress(r->c)) PetscFunctionReturn(0);
   if (!PetscIsNanReal(lacked))
-    snprintf(what, sizeof what, "%.3g of the weight is out of balance%s", (double)lacked, moves ? " and" : "");
+    snprintf(what, sizeof what, "%.3g of %s is out of balance%s", (double)lacked, measured_by(r->c),
+             moves ? " and" : "");
   PetscCall(RunDirLog(
     r->dir, "%s: %s%s",
     warns ? "warning = this method seeks no equilibrium before the first step" : "initial equilibrium = none is sought",
@@ -80,18 +88,20 @@ PetscErrorCode RunEquilibrate(Run *r)
   PetscCall(ModelEquilibrate(m, &report));
   if (report.outcome == STEP_ACCEPTED) {
     PetscCall(RunDirLog(r->dir,
-                        "initial equilibrium = lacked %.3g of the weight, left %.2g; moved %.3g m at most; parts = %d "
+                        "initial equilibrium = lacked %.3g of %s, left %.2g; moved %.3g m at most; parts = %d "
                         "iterations = %d",
-                        (double)s->lacked, (double)s->left, (double)s->moved, (int)s->parts, (int)s->iterations));
+                        (double)s->lacked, measured_by(r->c), (double)s->left, (double)s->moved, (int)s->parts,
+                        (int)s->iterations));
     PetscCall(TellLack(r, s->lacked));
     if (s->left > ROUND_OFF)
-      PetscCall(
-        RunDirLog(r->dir, "warning = points that move still bring %.2g of the weight out of balance", (double)s->left));
+      PetscCall(RunDirLog(r->dir, "warning = points that move still bring %.2g of %s out of balance", (double)s->left,
+                          measured_by(r->c)));
     PetscFunctionReturn(0);
   }
   snprintf(text, sizeof text,
-           "there is no equilibrium to begin with: %.3g of the weight was out of balance, %.3g still is (%s)",
-           (double)s->lacked, (double)s->left,
+           "there is no equilibrium to begin with: %.3g of %s was out of balance, %.3g still is (%s): smaller "
+           "cells lack less, and `initial: {equilibrium: none}` begins without one",
+           (double)s->lacked, measured_by(r->c), (double)s->left,
            report.outcome == STEP_TOO_SMALL ? report.newton.reason : "points left the grid");
   PetscCall(TellLack(r, s->lacked));
   PetscCall(RunDirLog(r->dir, "gave up = %s", text));
