@@ -283,7 +283,9 @@ PetscReal model_until_change(const Model *model);
 /* Collective. One step of at most `limit` s; halves it until Newton converges. */
 PetscErrorCode ModelStep(Model *model, PetscReal limit, StepReport *report);
 
-/* Collective. After all loads are on: one step in which the load is raised, by control * (a factor of its
+/* Collective. After all loads are on: the force that is there before the displacement is raised. */
+PetscErrorCode RaisedBegin(Model *model);
+/* Collective. One step in which the load is raised, by control * (a factor of its
  * displacement, or of its work at the first stiffness), or by less if Newton's method asks for it. */
 PetscErrorCode ModelRaise(Model *model, PetscReal control, StepReport *report);
 /* Collective. What the rise of its materials' strength did in the plastic strain of the last step, J: in a steady

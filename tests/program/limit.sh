@@ -43,6 +43,41 @@ sed 's/^loads:.*//; s/^  - {on: {boundary: bottom}, fix: \[y\]}/&\n  - {name: pl
 expect "a displacement" 0 "$talus" run plate.yaml --out run --force --set analysis.limit='{raise: plate, step: 0.02, tolerance: 1e-3}'
 awk -F, 'END { exit !($3 > 188.3e3 && $3 < 188.6e3) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
 says out.txt "N along the displacement of 'plate'"
+
+# Clay that is drawn out aside by 20 kPa while floor and plate stand pulls at the plate by nu / (1 - nu) of that, 8.57 kPa:
+# the first steps, which add next to nothing to it, are no limit; that is 2 c + 20 kPa = 50 kPa
+sed "s/cohesion: 60e3/cohesion: 15e3/; s/friction_angle: 25/friction_angle: 0/; s/name: press, on: {boundary: top}, value: .*/on: {boundary: left}, value: [-2e4, 0]}, {on: {boundary: right}, value: [2e4, 0]}]}/" block.yaml |
+  sed 's/^  - {on: {boundary: bottom}, fix: \[y\]}/&\n  - {name: plate, on: {boundary: top}, displacement: {y: 1e-3}}/' >drawn.yaml
+expect "a load that is there before" 0 "$talus" run drawn.yaml --out run --force --set analysis.limit='{raise: plate, step: 1e-3, tolerance: 1e-3}'
+near 50e3
+
+# A pile in clay that pushes it aside, half of it: with adhesion of half the strength (Randolph and Houlsby 1984)
+# pi + 2 D + 4 cos(pi/4 - D/2) (sqrt 2 + sin(pi/4 - D/2)) = 10.82 c r, D = asin 0.5; its poles touch lines of the grid
+cat >pile.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: limit-load, limit: {raise: pile}}
+grid: {box: {min: [-4, 0], max: [4, 4]}, size: 0.25}
+bodies:
+  - name: clay
+    shape: {difference: [{box: {min: [-4, 0], max: [4, 4]}}, {circle: {centre: [0, 0], radius: 1}}]}
+    material: clay
+    stress: {xx: -3e5, yy: -3e5, zz: -3e5}
+materials:
+  clay: {law: mohr-coulomb, density: 2000, young: 1e8, poisson: 0.49, friction_angle: 0, cohesion: 1e4}
+boundary:
+  - {on: {y: 0}, fix: [y]}
+  - {on: {y: 4}, fix: [y]}
+  - {on: {x: -4}, fix: [x, y]}
+  - {on: {x: 4}, fix: [x, y]}
+walls:
+  - {name: pile, shape: {circle: {centre: [0, 0], radius: 1}}, adhesion: 5e3, motion: [{displacement: {x: 0.1}}]}
+measures: {limit: {limit_load: value}}
+END
+turn
+expect "a pile that adheres" 0 on_ranks $ranks "$talus" run pile.yaml --out run --force
+lacks out.txt "no limit was found"
+awk -F, 'END { exit !($3 > 0.95 * 108.2e3 && $3 < 1.05 * 108.2e3) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
 expect "not far enough" 0 "$talus" run plate.yaml --out run --force --set analysis.limit='{raise: plate, most: 0.01}'
 says out.txt "warning = no limit was found"
 says err.txt "warning: no limit was found: what is told is the largest load that was reached"

@@ -196,6 +196,14 @@ static PetscErrorCode LookAtMotion(Model *m)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode RaisedBegin(Model *m)
+{
+  PetscFunctionBeginUser;
+  step_control_start(&m->control, m->c->analysis.limit.step); /* how loads came on says nothing of it */
+  if (!is_forces(m->c)) PetscCall(LookAtMotion(m));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelRaise(Model *m, PetscReal control, StepReport *report)
 {
   Raised *r = &m->raised;

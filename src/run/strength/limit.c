@@ -73,6 +73,7 @@ PetscErrorCode LimitBegin(LimitRun *s, Model *m)
 
   PetscFunctionBeginUser;
   s->step = m->c->analysis.limit.step;
+  PetscCall(RaisedBegin(m));
   PetscCall(Look(s, m, &none));
   PetscFunctionReturn(0);
 }
@@ -94,22 +95,31 @@ static PetscReal size_of_loads(const LimitRun *s)
   return most;
 }
 
-/* By how much the load grew while the displacement doubled, over the largest; 1 as long as there is no half. */
+/* What its growth is measured by: how far it has come from what there was to begin with, as the weight on a pipe that
+ * is pulled up, to which the first hair's breadth adds next to nothing. */
+static PetscReal size_of_rise(const LimitRun *s)
+{
+  PetscReal most = 0;
+  for (PetscInt i = 1; i < s->n; ++i) most = PetscMax(most, PetscAbsReal(s->rows[i].load - s->rows[0].load));
+  return most;
+}
+
+/* By how much the load grew while the displacement doubled, over its rise; 1 as long as there is no half. */
 static PetscReal growth(const LimitRun *s)
 {
-  const PetscReal size = size_of_loads(s), half = 0.5 * s->rows[s->n - 1].displacement;
+  const PetscReal size = size_of_rise(s), half = 0.5 * s->rows[s->n - 1].displacement;
   PetscInt i = s->n - 1;
   while (i > 0 && s->rows[i].displacement > half) --i;
   return i > 0 && size > 0 ? (largest_load(s) - s->rows[i].load) / size : 1;
 }
 
-/* Where steps are tiny: what the load would grow by, over the largest, while the displacement doubles, if it went on as
+/* Where steps are tiny: what the load would grow by, over its rise, while the displacement doubles, if it went on as
  * in the last of them. It will grow by less, since what yields more and more gets no stiffer. 1: no answer. */
 static PetscReal creep(const LimitRun *s)
 {
   if (s->n <= CREPT) return 1;
   const LimitRow *b = &s->rows[s->n - 1], *a = b - CREPT;
-  const PetscReal way = b->displacement - a->displacement, work = b->work - a->work, size = size_of_loads(s);
+  const PetscReal way = b->displacement - a->displacement, work = b->work - a->work, size = size_of_rise(s);
   if (b->control - a->control > CREPT * TINY * b->control || way <= 0 || work <= 0 || size <= 0) return 1;
   if (PetscAbsReal(b->stored - a->stored) > STORED * work) return 1;
   return (b->load - a->load) / way * b->displacement / size;
@@ -120,6 +130,12 @@ static PetscBool rises_as_it_hardens(const LimitRun *s)
   return (PetscBool)(s->rises > HARDENS && s->rises < HARDENS_MOST);
 }
 
+/* Where the search ends: what there was to begin with may be all that it bears. */
+static LimitOutcome ends(const LimitRun *s, const LimitSpec *spec)
+{
+  return size_of_rise(s) <= spec->tolerance * size_of_loads(s) ? LIMIT_HOLDS : LIMIT_MOST;
+}
+
 static LimitOutcome judge(const LimitRun *s, const LimitSpec *spec, PetscBool forces)
 {
   const LimitRow *last = &s->rows[s->n - 1];
@@ -127,7 +143,7 @@ static LimitOutcome judge(const LimitRun *s, const LimitSpec *spec, PetscBool fo
   if (growth(s) <= spec->tolerance && !rises_as_it_hardens(s)) return LIMIT_HOLDS;
   if (last->load < most - FALLEN * spec->tolerance * size_of_loads(s)) return LIMIT_FALLS;
   if (creep(s) <= spec->tolerance) return LIMIT_FLOWS;
-  return (forces ? most : last->control * (1 + 1e-9)) >= spec->most ? LIMIT_MOST : LIMIT_RISES;
+  return (forces ? most : last->control * (1 + 1e-9)) >= spec->most ? ends(s, spec) : LIMIT_RISES;
 }
 
 /* A size that Newton's method failed with is left alone for a while, as in other runs (step_control.h). */
