@@ -1,7 +1,7 @@
 #include "points/seed/seed.h"
 
 #define SLIVER 0.1 /* of what a point has in a whole cell: less joins its neighbour, */
-#define LEVER 0.2  /* but not if that takes the surface of the cell's parts aside by so much of half of a part's side */
+#define LEVER 0.5  /* but not if that takes the surface of the cell's parts aside by so much of half of a part's side */
 
 static PetscBool is_sliver(const SeedPart *part, PetscInt n)
 {
