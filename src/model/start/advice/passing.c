@@ -92,7 +92,7 @@ static PetscErrorCode MovesNothing(const Model *m, PetscInt entry, PetscBool *no
 
 PetscErrorCode AdvisePassing(const Model *m, Diag *diag)
 {
-  PetscBool nothing;
+  PetscBool nothing = PETSC_FALSE;
   Extent extent;
 
   PetscFunctionBeginUser;
