@@ -23,12 +23,12 @@ static PetscBool goes_anywhere(const MotionSpec *motion)
   return goes;
 }
 
-/* A mesh goes with its body, and no other comes there. To nodes of a grid that is restored material may come: of
- * dynamics that is what walls and floors are for, of statics what holds it and what moves itself; what else would move
- * it there was meant for material that is there. */
+/* A mesh goes with its body, and no other comes there; but of gmm its nodes are obstacles for what flies. To nodes of a
+ * grid that is restored material may come: of dynamics that is what walls and floors are for, of statics what holds it
+ * and what moves itself; what else would move it there was meant for material that is there. */
 static PetscBool is_meant_for_now(const Model *m, const MotionSpec *motion)
 {
-  if (!m->method->restores_grid) return PETSC_TRUE;
+  if (!m->method->restores_grid) return (PetscBool) !(m->method->clouds && m->scheme->inertia);
   return (PetscBool)(!m->scheme->inertia && !motion->moves && goes_anywhere(motion));
 }
 
