@@ -586,7 +586,9 @@ static void thin_parts_press_where_they_are(void **state)
   Points *points = make_points(t);
   points->components[POINT_REACH] = 1;
   points->components[POINT_FACE] = points->components[POINT_CORNER] = grid->dim;
+  t->c.n_walls = 1; /* seeding asks for no more of them */
   seed_into(t, grid, points);
+  t->c.n_walls = 0;
   for (PetscInt p = 0; p < points->n; ++p) {
     const PetscReal *x = point_real(points, POINT_X, p);
     const PetscBool beside = x[0] > 1.5 && x[0] < 1.75 && x[1] > 1 && x[1] < 1.25;

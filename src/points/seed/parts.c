@@ -368,6 +368,7 @@ SeedFill seed_parts(const Seeding *s, PetscInt cell, const SeedRule *rule, SeedP
     inside += part[q].share;
   }
   seed_hand_on_faces(part, rule, s->source->dim);
-  seed_join_slivers(part, rule->n, s->source->dim);
+  /* between bodies that rub a thin part would bear what its neighbours should */
+  seed_join_slivers(part, rule->n, s->source->dim, (PetscBool)(s->c->n_walls && !s->c->n_interfaces));
   return inside <= 0 ? SEED_NONE : inside >= 1 - SEED_NOTHING ? SEED_WHOLE : SEED_CUT;
 }

@@ -97,8 +97,9 @@ void seed_place_at_side(CellType type, const PetscReal *x, PetscInt side, const 
                         PetscReal *position);
 
 /* slivers.c. Points that are next to nothing go to those beside them, or, where a cell has no others, are one: whatever
- * comes first, so that a body and its image in a mirror have the same points. */
-void seed_join_slivers(SeedPart *part, PetscInt n, PetscInt dim);
+ * comes first, so that a body and its image in a mirror have the same points. walls: but not those whose surface walls
+ * would then press aside of where it is. */
+void seed_join_slivers(SeedPart *part, PetscInt n, PetscInt dim, PetscBool walls);
 /* planes.c. Adds a piece of surface to that which looks the same way. What there is no room for is bent. */
 void seed_add_plane(SeedPlanes *planes, PetscInt dim, const PetscReal *area);
 void seed_add_planes(SeedPlanes *planes, PetscInt dim, PetscReal share, const SeedPlanes *more);

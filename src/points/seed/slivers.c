@@ -69,7 +69,7 @@ static void give(const SeedPart *from, PetscReal share, PetscInt dim, SeedPart *
   to->whole = PETSC_FALSE;
 }
 
-void seed_join_slivers(SeedPart *part, PetscInt n, PetscInt dim)
+void seed_join_slivers(SeedPart *part, PetscInt n, PetscInt dim, PetscBool walls)
 {
   SeedPart before[SEED_MAX_RULE];
   PetscInt near[SEED_MAX_RULE], first = -1;
@@ -82,7 +82,7 @@ void seed_join_slivers(SeedPart *part, PetscInt n, PetscInt dim)
       continue;
     }
     if (!n_near) near[n_near++] = first;
-    if (goes_aside(before, n, dim, q, near, n_near)) continue;
+    if (walls && goes_aside(before, n, dim, q, near, n_near)) continue;
     for (PetscInt k = 0; k < n_near; ++k) give(before + q, 1 / (PetscReal)n_near, dim, part + near[k]);
     part[q].share = 0;
   }
