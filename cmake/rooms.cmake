@@ -91,9 +91,15 @@ set(TALUS_TEST_ENVIRONMENT OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFI
 set(TALUS_TEST_PATIENCE 1) # times the usual time limits
 if(TALUS_SANITIZE)
   set(TALUS_TEST_PATIENCE 4)
+  # On the stack that AddressSanitizer makes for this gcc before 13.3 lays objects of 64 bytes askew (its bug 110027), and
+  # what moves them at once on processors with AVX-512 ends.
+  set(after_return 1)
+  if(CMAKE_C_COMPILER_ID STREQUAL "GNU" AND CMAKE_C_COMPILER_VERSION VERSION_LESS 13.3)
+    set(after_return 0)
+  endif()
   # Full unwinding, since MPI's libraries keep no frame pointers and their leaks are told by name.
   list(APPEND TALUS_TEST_ENVIRONMENT
-    ASAN_OPTIONS=fast_unwind_on_malloc=0:handle_segv=2:detect_stack_use_after_return=1
+    ASAN_OPTIONS=fast_unwind_on_malloc=0:handle_segv=2:detect_stack_use_after_return=${after_return}
     LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/cmake/lsan.supp:print_suppressions=0
     UBSAN_OPTIONS=print_stacktrace=1)
 endif()
