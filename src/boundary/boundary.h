@@ -27,8 +27,7 @@ typedef void (*MotionField)(void *context, const PetscReal *x, PetscReal t0, Pet
 typedef struct Boundary {
   const Case *c;
   PetscInt dim, n_nodes;
-  PetscInt
-    *body_field; /* n_nodes: the velocity field of each; NULL: no entry names bodies, or the nodes are a cloud's */
+  PetscInt *body_field; /* n_nodes: the velocity field of each; NULL: no entry names bodies, or nodes are a cloud's */
   MotionNodes *motion;  /* one per entry of the case's boundary; in axisymmetry the axis behind them */
   unsigned char *fixed; /* n_nodes x dim */
   /* n_nodes x dim: the entry that prescribes the dof, -1 if none; of several the first one that faces along it, or the

@@ -484,6 +484,20 @@ PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const c
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode CaseReadKept(MPI_Comm comm, const char *folder, Case **c)
+{
+  char file[PETSC_MAX_PATH_LEN];
+  Diag *unheard;
+
+  PetscFunctionBeginUser;
+  *c = NULL;
+  PetscCall(PetscSNPrintf(file, sizeof file, "%s/case.yaml", folder));
+  PetscCall(DiagCreate(&unheard));
+  PetscCall(CaseRead(comm, file, 0, NULL, unheard, c));
+  PetscCall(DiagDestroy(&unheard));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CaseReadToTest(const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c)
 {
   PetscFunctionBeginUser;

@@ -150,7 +150,7 @@ static PetscBool has_run(const char *folder)
   return (PetscBool)!access(file, R_OK);
 }
 
-/* CASE or --resume, and what may stand beside it; *ok is false after a complaint. That there is no run is told later. */
+/* CASE or --resume, and what may stand beside it; *ok is false after a complaint. No run there is told later. */
 static PetscErrorCode CheckArguments(const CliArguments *a, PetscInt n_set, const char *const *set, PetscBool *ok,
                                      int *exit_code)
 {

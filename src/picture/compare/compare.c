@@ -1,6 +1,7 @@
 #include "picture/compare/compare_private.h"
 #include <math.h>
 #include <string.h>
+#include "input/case_file.h"
 #include "output/directory/run_dir_files.h"
 #include "picture/compare/found.h"
 #include "picture/compare/rows.h"
@@ -251,7 +252,8 @@ static PetscErrorCode OpenCases(Comparison *c)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(c->options->n_runs, &c->cases));
-  for (PetscInt r = 0; r < c->options->n_runs; ++r) PetscCall(CurveRunCase(c->options->runs[r], &c->cases[r]));
+  for (PetscInt r = 0; r < c->options->n_runs; ++r)
+    PetscCall(CaseReadKept(PETSC_COMM_SELF, c->options->runs[r], &c->cases[r]));
   PetscFunctionReturn(0);
 }
 

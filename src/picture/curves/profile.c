@@ -1,6 +1,7 @@
 /* The tractions along a wall in one state: a picture over a coordinate, and a table. */
 #include <string.h>
 #include "base/text.h"
+#include "input/case_file.h"
 #include "output/directory/run_dir_files.h"
 #include "output/vtk/vtk_read.h"
 #include "output/vtk/vtk_series.h"
@@ -199,7 +200,7 @@ static PetscErrorCode FindSpan(const PlotOptions *options, PetscInt wall, PetscR
 
   PetscFunctionBeginUser;
   PetscCall(DiagCreate(&own));
-  PetscCall(CurveRunCase(options->run, &c));
+  PetscCall(CaseReadKept(PETSC_COMM_SELF, options->run, &c));
   if (c) PetscCall(WallsCreate(c, own, &walls));
   if (walls) {
     PetscCall(PointsSpan(options->run, time, p->along, points));
@@ -221,7 +222,7 @@ static PetscErrorCode FindWall(const PlotOptions *options, Diag *diag, PetscInt 
 
   PetscFunctionBeginUser;
   *index = -1;
-  PetscCall(CurveRunCase(options->run, &c));
+  PetscCall(CaseReadKept(PETSC_COMM_SELF, options->run, &c));
   PetscCall(PetscCalloc1(c ? c->n_walls + 1 : 1, &names));
   for (PetscInt k = 0; c && k < c->n_walls; ++k) {
     names[k] = c->walls[k].name;

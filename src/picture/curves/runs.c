@@ -1,7 +1,6 @@
 #include "picture/curves/runs.h"
 #include <string.h>
 #include <sys/stat.h>
-#include "input/case_file.h"
 #include "output/directory/run_dir_files.h"
 
 /* The last part of a path, slashes at its end apart: its first character, and how many. */
@@ -61,20 +60,6 @@ PetscErrorCode CurveRunsClose(PetscInt n, CurveRun **runs)
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < n; ++i) PetscCall(HistoryFree(&(*runs)[i].history));
   PetscCall(PetscFree(*runs));
-  PetscFunctionReturn(0);
-}
-
-PetscErrorCode CurveRunCase(const char *folder, Case **c)
-{
-  char path[FILE_PATH];
-  Diag *unheard;
-
-  PetscFunctionBeginUser;
-  *c = NULL;
-  PetscCall(PetscSNPrintf(path, sizeof path, "%s/case.yaml", folder));
-  PetscCall(DiagCreate(&unheard));
-  PetscCall(CaseRead(PETSC_COMM_SELF, path, 0, NULL, unheard, c));
-  PetscCall(DiagDestroy(&unheard));
   PetscFunctionReturn(0);
 }
 

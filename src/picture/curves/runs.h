@@ -15,8 +15,6 @@ typedef struct {
 PetscErrorCode CurveRunsOpen(PetscInt n, const char *const *folders, Diag *diag, CurveRun **runs);
 PetscErrorCode CurveRunsClose(PetscInt n, CurveRun **runs);
 
-/* The case of the run in a folder; NULL where it cannot be read, which is not said. */
-PetscErrorCode CurveRunCase(const char *folder, Case **c);
 /* Column of a measure, `time` or `step`; -1, with a complaint that names the nearest, if the run has none. */
 PetscErrorCode CurveRunColumn(const CurveRun *run, const char *name, Diag *diag, PetscInt *column);
 PetscReal curve_run_value(const CurveRun *run, PetscInt row, PetscInt column);

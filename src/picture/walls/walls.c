@@ -1,5 +1,6 @@
 #include "picture/walls/walls.h"
 #include <math.h>
+#include "input/case_file.h"
 #include "picture/curves/runs.h"
 
 enum { FILL = 214, LINE = 50 };
@@ -10,7 +11,7 @@ PetscErrorCode PlotWallsOpen(const char *run, Diag *diag, PlotScene *scene)
   Diag *own; /* a run may be drawn whatever became of its case */
 
   PetscFunctionBeginUser;
-  PetscCall(CurveRunCase(run, &scene->walled));
+  PetscCall(CaseReadKept(PETSC_COMM_SELF, run, &scene->walled));
   PetscCall(DiagCreate(&own));
   if (scene->walled && scene->walled->n_walls) PetscCall(WallsCreate(scene->walled, own, &scene->walls));
   if (scene->walls && diag_errors(own)) {

@@ -6,14 +6,8 @@
 /* The case that the other run has kept. */
 static PetscErrorCode ReadCase(MPI_Comm comm, const char *folder, Diag *diag, Case **c)
 {
-  char file[PETSC_MAX_PATH_LEN];
-  Diag *unheard;
-
   PetscFunctionBeginUser;
-  PetscCall(PetscSNPrintf(file, sizeof file, "%s/case.yaml", folder));
-  PetscCall(DiagCreate(&unheard));
-  PetscCall(CaseRead(comm, file, 0, NULL, unheard, c));
-  PetscCall(DiagDestroy(&unheard));
+  PetscCall(CaseReadKept(comm, folder, c));
   if (!*c) diag_error(diag, "initial.run", "there is no run in '%s': no case.yaml that could be read", folder);
   PetscFunctionReturn(0);
 }
