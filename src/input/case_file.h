@@ -8,7 +8,7 @@
  * "path.to.key=value" of --set, applied before validation. On any mistake *c stays NULL and diag
  * says what is wrong (its resolver is installed and lives until DiagDestroy). */
 PetscErrorCode CaseRead(MPI_Comm comm, const char *file, PetscInt n_set, const char *const *set, Diag *diag, Case **c);
-/* Collective. The case.yaml that a run has kept in its directory, without a word; NULL: there is none, or it is none. */
+/* Collective. The case.yaml that a run has kept in its directory, without a word; NULL: there is none. */
 PetscErrorCode CaseReadKept(MPI_Comm comm, const char *folder, Case **c);
 /* Of this rank. The same of a case that is not run, one of whose materials is tested: what would have no effect in a
  * run is not told. */
