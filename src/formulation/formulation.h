@@ -36,7 +36,8 @@ typedef struct {
   PetscReal pressure_scale;
   PetscReal alpha;          /* mixed: stabilisation of the pressure is alpha / G */
   const PetscReal *gravity; /* mixed: m/s2, three numbers, */
-  const PetscBool *weighs;  /* and of which bodies pressures bear the weight */
+  const PetscReal *pull;    /* n_points x 3, what acts per mass besides, or NULL, */
+  const PetscBool *weighs;  /* and of which bodies pressures bear all that */
   /* mixed: per group, ties the pressures of a hardly filled cell, m3/Pa, or NULL */
   const PetscReal *pressure_tie;
   const PetscInt *cell_node; /* mixed, points with nodes of their own: the corners of each cell of their grid */

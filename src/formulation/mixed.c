@@ -2,7 +2,7 @@
  * pressure projection (docs/theory.md).
  *
  *   R_I  = sum_p V0 tau grad N_I + inertia          tau with the interpolated pressure
- *   R_pI = sum_p V0 N_I (theta - p / K) - sum_cells (alpha / G) V0 int (N_I - mean)(p + rho g . x - mean)
+ *   R_pI = sum_p V0 N_I (theta - p / K) - sum_cells (alpha / G) V0 int (N_I - mean)(p + rho b . x - mean)
  *
  * The unknown is p over a scale of Pa/m, and the second equation is multiplied by it: then all
  * unknowns are m and all equations N, and the tangent is symmetric where the law's is. Points
@@ -18,8 +18,8 @@ typedef struct {
   PetscReal p[CELL_MAX_NODES], fp[CELL_MAX_NODES];
   PetscReal Kup[3 * CELL_MAX_NODES * CELL_MAX_NODES], Kpu[3 * CELL_MAX_NODES * CELL_MAX_NODES];
   PetscReal Kpp[CELL_MAX_NODES * CELL_MAX_NODES];
-  PetscReal hold;   /* what holds pressures that vary inside the cell, m3/Pa, */
-  PetscReal weight; /* but as weight makes them vary: times density, kg/Pa */
+  PetscReal hold;      /* what holds pressures that vary inside the cell, m3/Pa, */
+  PetscReal weight[3]; /* but as weight makes them vary, N/Pa */
 } MixedWork;
 
 KERNEL void mixed_load(const int dim, const int nn, const WeakFormInput *in, PetscInt group, MixedWork *w)
@@ -31,7 +31,7 @@ KERNEL void mixed_load(const int dim, const int nn, const WeakFormInput *in, Pet
   for (int i = 0; i < nn * width; ++i) w->Kpp[i] = 0;
   for (int i = 0; i < dim * nn * width; ++i) w->Kup[i] = w->Kpu[i] = 0;
   w->hold = in->pressure_tie ? in->pressure_tie[group] : 0;
-  w->weight = 0;
+  for (int d = 0; d < dim; ++d) w->weight[d] = 0;
 }
 
 /* The projection's integral is that over the cell, whatever the number of its points. */
@@ -39,21 +39,21 @@ KERNEL void mixed_project(const int dim, const int nn, const PetscBool hoop, con
                           MixedWork *w)
 {
   const PetscInt *node = cell_nodes(in, group);
-  const PetscReal hold = w->hold * in->pressure_scale * in->pressure_scale, weight = w->weight * in->pressure_scale;
+  const PetscReal scale = in->pressure_scale, hold = w->hold * scale * scale;
   PetscReal radius[CELL_MAX_NODES], P[CELL_MAX_NODES * CELL_MAX_NODES], depth[CELL_MAX_NODES];
   for (int I = 0; I < nn; ++I) {
     const PetscReal *x = in->x + node[I] * dim;
     radius[I] = x[0];
-    depth[I] = pressure_depth(dim, in->gravity, x, w->u.du + I * dim);
+    depth[I] = scale * pressure_depth(dim, w->weight, x, w->u.du + I * dim);
   }
   if (hoop) ring_projection(nn, radius, P);
   for (int I = 0; I < nn; ++I)
     for (int J = 0; J < nn; ++J) {
       if (!hoop) P[I * nn + J] = projection_entry(dim, nn, I, J);
-      w->fp[I] -= P[I * nn + J] * (hold * w->p[J] + weight * depth[J]);
+      w->fp[I] -= P[I * nn + J] * (hold * w->p[J] + depth[J]);
       w->Kpp[I * row_width(nn) + J] -= hold * P[I * nn + J];
       for (int d = 0; !in->symmetric && d < dim; ++d)
-        w->Kpu[(I * dim + d) * row_width(nn) + J] -= weight * P[I * nn + J] * in->gravity[d];
+        w->Kpu[(I * dim + d) * row_width(nn) + J] -= scale * w->weight[d] * P[I * nn + J];
     }
 }
 
@@ -102,7 +102,7 @@ KERNEL void add_point(const int dim, const int nn, const PetscBool hoop, const W
   const PetscReal volume = points->real[POINT_VOLUME][p], mass = points->real[POINT_MASS][p];
   const PetscReal radius = hoop ? *point_real(points, POINT_X, p) : 0;
   const PetscReal scaled = in->pressure_scale * volume, lumping = in->lumping ? in->lumping[group] : 0;
-  PetscReal N[CELL_MAX_NODES];
+  PetscReal N[CELL_MAX_NODES], weight[3];
   PointRun run = {.n = 1, .tau = {b->s.tau + 6 * k}, .c = {b->s.c + 36 * k}, .volume = {volume}};
   row_load(nn, 1, support_N(in->support, group, p), N);
   current_gradients(dim, nn, hoop, support_dN(in->support, group, p, dim), N, radius, b->dF + 9 * k, run.g[0]);
@@ -111,7 +111,8 @@ KERNEL void add_point(const int dim, const int nn, const PetscBool hoop, const W
   row_add(nn, scaled * (b->s.theta[k] - b->p[k] * material->compliance), N, w->fp);
   const PetscReal softness = in->alpha / material->elastic.shear;
   w->hold += softness * volume;
-  if (in->weighs[points->body[p]]) w->weight += softness * mass;
+  point_weight(dim, in, p, weight);
+  for (int d = 0; d < dim; ++d) w->weight[d] += softness * mass * weight[d];
   if (!tangent) return;
   add_stiffness(dim, nn, hoop, PETSC_FALSE, &run, w->u.K);
   add_pressure_force(dim, nn, hoop, run.g[0], b->s.coupling + 6 * k, N, scaled, w->Kup);

@@ -75,32 +75,33 @@ KERNEL void hold_pressure(const int dim, const WeakFormInput *in, const PetscInt
   if (out->values) out->values[((size_t)slot[I * w->nn + J] + 1) * size * size - 1] -= entry;
 }
 
-/* The same of the weight that these pressures bear, N over density and pressure: depth is that of J. */
-KERNEL void weigh_pressure(const int dim, const WeakFormInput *in, const PetscInt *slot, const CloudWork *w, PetscInt I,
-                           PetscInt J, PetscReal entry, PetscReal depth, WeakFormOutput *out)
-{
-  const int size = dim + 1;
-  if (out->volume) out->volume[w->node[I]] -= entry * depth;
-  if (!out->values || in->symmetric) return;
-  PetscReal *row = out->values + (size_t)slot[I * w->nn + J] * size * size + dim * size;
-  for (int d = 0; d < dim; ++d) row[d] -= entry * in->gravity[d];
-}
-
-/* The corners of the point's cell, which are among its nodes. */
+/* The corners of the point's cell, which are among its nodes, and what pressures bear at the point, per mass. */
 typedef struct {
   PetscInt at[CELL_MAX_NODES]; /* there */
-  PetscReal radius[CELL_MAX_NODES], depth[CELL_MAX_NODES];
+  PetscReal weight[3], radius[CELL_MAX_NODES], depth[CELL_MAX_NODES];
 } Corners;
 
-KERNEL void find_corners(const int dim, const WeakFormInput *in, PetscInt cell, const CloudWork *w, Corners *c)
+/* The same of the weight that these pressures bear, N over what acts per mass times length: corners k and l. */
+KERNEL void weigh_pressure(const int dim, const WeakFormInput *in, const PetscInt *slot, const CloudWork *w,
+                           const Corners *c, int k, int l, PetscReal entry, WeakFormOutput *out)
+{
+  const int size = dim + 1;
+  if (out->volume) out->volume[w->node[c->at[k]]] -= entry * c->depth[l];
+  if (!out->values || in->symmetric) return;
+  PetscReal *row = out->values + (size_t)slot[c->at[k] * w->nn + c->at[l]] * size * size + dim * size;
+  for (int d = 0; d < dim; ++d) row[d] -= entry * c->weight[d];
+}
+
+KERNEL void find_corners(const int dim, const WeakFormInput *in, PetscInt p, const CloudWork *w, Corners *c)
 {
   const int corners = 1 << dim;
-  const PetscInt *node = in->cell_node + cell * corners;
+  const PetscInt *node = in->cell_node + in->points->cell[p] * corners;
+  point_weight(dim, in, p, c->weight);
   for (int k = 0; k < corners; ++k) {
     c->at[k] = 0;
     while (w->node[c->at[k]] != node[k]) ++c->at[k];
     c->radius[k] = in->x[node[k] * dim];
-    c->depth[k] = pressure_depth(dim, in->gravity, in->x + node[k] * dim, in->du + node[k] * dim);
+    c->depth[k] = pressure_depth(dim, c->weight, in->x + node[k] * dim, in->du + node[k] * dim);
   }
 }
 
@@ -110,16 +111,15 @@ KERNEL void point_project(const int dim, const PetscBool hoop, const WeakFormInp
 {
   const int corners = 1 << dim;
   const PetscReal volume = in->points->real[POINT_VOLUME][p];
-  const PetscReal mass = in->weighs[in->points->body[p]] ? in->points->real[POINT_MASS][p] : 0;
-  const PetscReal scale = in->pressure_scale;
+  const PetscReal mass = in->points->real[POINT_MASS][p], scale = in->pressure_scale;
   Corners c;
   PetscReal ring[CELL_MAX_NODES * CELL_MAX_NODES];
-  find_corners(dim, in, in->points->cell[p], w, &c);
+  find_corners(dim, in, p, w, &c);
   if (hoop) ring_projection(corners, c.radius, ring);
   for (int k = 0; k < corners; ++k)
     for (int l = 0; l < corners; ++l) {
       const PetscReal share = softness * scale * (hoop ? ring[k * corners + l] : projection_entry(dim, corners, k, l));
-      weigh_pressure(dim, in, slot, w, c.at[k], c.at[l], share * mass, c.depth[l], out);
+      weigh_pressure(dim, in, slot, w, &c, k, l, share * mass, out);
       hold_pressure(dim, in, slot, w, c.at[k], c.at[l], share * volume * scale, out);
     }
 }

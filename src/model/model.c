@@ -408,6 +408,7 @@ PetscErrorCode ModelDestroy(Model **model)
   PetscCall(PetscFree(m->drawn));
   PetscCall(PetscFree(m->balanced));
   PetscCall(PetscFree(m->weighs));
+  PetscCall(PetscFree(m->pull));
   PetscCall(PetscFree(m->let_go));
   PetscCall(PetscFree(m->raised.nodal));
   PetscCall(PetscFree2(m->unheld.dof, m->unheld.turns));

@@ -177,6 +177,7 @@ typedef struct Model {
   Guess guess;
   BodyForce body_force; /* NULL: gravity alone */
   void *body_force_context;
+  PetscReal *pull;          /* mixed: n_points x 3, what that gives in the step, m/s2; NULL: there is none */
   PetscBool (*asked)(void); /* does somebody want the run to end? NULL: a step is always finished */
   PetscReal time;           /* s */
   StepControl control;

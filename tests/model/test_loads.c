@@ -179,6 +179,70 @@ static void test_body_force(void **state)
     }
 }
 
+/* Downwards, by more the higher where *context is not 0. */
+static void downwards(void *context, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *b)
+{
+  const PetscReal *more = context;
+  (void)x;
+  (void)t;
+  for (PetscInt i = 0; i < n; ++i) b[3 * i + 1] = -10 - *more * X[3 * i + 1];
+}
+
+/* A block that can hardly be compressed, and gives way nowhere but at its top, under gravity or that force. */
+static Model *confined(const char *method, const char *basis, CellType cell, PetscReal *more, MPI_Comm comm)
+{
+  Bench b;
+  bench_init(&b, method, cell, 4);
+  if (basis) b.c.basis.kind = basis;
+  if (basis) bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 1.25, 0}, 0.25);
+  b.c.formulation = (char *)"mixed";
+  b.c.mixed.stabilisation = 8;
+  b.c.newton.residual = 1e-10;
+  b.constants[1].value = 0.4999;
+  b.material.law = (char *)"neo-hookean-split";
+  if (!more) b.c.gravity[1] = -10;
+  b.c.gravity_amplitude = (Amplitude){.n = 1, .time = (PetscReal[]){0}, .value = (PetscReal[]){1}};
+  bench_motion(&b, 1, 0, MOTION_FIXED, 2);
+  for (int side = 0; side < 2; ++side) bench_motion(&b, 0, side, MOTION_FIXED, 1);
+  for (int side = 0; is_space(cell) && side < 2; ++side) bench_motion(&b, 2, side, MOTION_FIXED, 4);
+  Model *m = bench_model(&b, comm);
+  if (more) CALL(ModelSetBodyForce(m, downwards, more));
+  model_step(m, 1);
+  return m;
+}
+
+/* What holds pressures within cells leaves alone those that bear a body force, as those that bear a weight. */
+static void test_pressure_bears_a_body_force(void **state)
+{
+  static const struct {
+    const char *method, *basis;
+    CellType cell;
+  } variants[] = {{"fem", NULL, CELL_QUADRILATERAL},   {"mpm", NULL, CELL_TRIANGLE},
+                  {"mpm", "gimp", CELL_QUADRILATERAL}, {"mpm", NULL, CELL_HEXAHEDRON},
+                  {"fem", NULL, CELL_TETRAHEDRON},     {"fem", NULL, CELL_TRIANGLE}};
+  (void)state;
+  EACH_OF (k, variants) {
+    PetscReal more = 0, off = 0;
+    Model *weight = confined(variants[k].method, variants[k].basis, variants[k].cell, NULL, PETSC_COMM_SELF);
+    Model *force = confined(variants[k].method, variants[k].basis, variants[k].cell, &more, PETSC_COMM_WORLD);
+    CHECK_CLOSE(points_difference(force, weight, POINT_PRESSURE), 0, 1e-3);
+    CALL(ModelDestroy(&weight));
+    CALL(ModelDestroy(&force));
+    more = 20;
+    force = confined(variants[k].method, variants[k].basis, variants[k].cell, &more, PETSC_COMM_WORLD);
+    for (PetscInt p = 0; p < force->points->n; ++p) {
+      const PetscReal y = point_real(force->points, POINT_X, p)[1];
+      const PetscReal exact = -1e4 * (1 - y) - 1e4 * (1 - y * y); /* Pa */
+      off = PetscMax(off, PetscAbsReal(force->points->real[POINT_PRESSURE][p] - exact));
+    }
+    off = model_max(force, off);
+    PetscPrintf(PETSC_COMM_WORLD, "%s, cell %d: off by %.3g Pa\n", variants[k].method, (int)variants[k].cell,
+                (double)off);
+    CHECK(off < 100, "pressure off by %g Pa", (double)off);
+    CALL(ModelDestroy(&force));
+  }
+}
+
 /* (1 + t y, y^2, 2) of where the surface was: Gauss points of its faces are exact for it. */
 static void of_height(void *context, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *f)
 {
@@ -259,9 +323,10 @@ static void test_factor_of_a_point(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_whole_surface),     cmocka_unit_test(test_between_bodies),
-                                     cmocka_unit_test(test_amplitudes),        cmocka_unit_test(test_factors),
-                                     cmocka_unit_test(test_factor_of_a_point), cmocka_unit_test(test_boundary_sum),
-                                     cmocka_unit_test(test_body_force)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_whole_surface),     cmocka_unit_test(test_between_bodies),
+    cmocka_unit_test(test_amplitudes),        cmocka_unit_test(test_factors),
+    cmocka_unit_test(test_factor_of_a_point), cmocka_unit_test(test_boundary_sum),
+    cmocka_unit_test(test_body_force),        cmocka_unit_test(test_pressure_bears_a_body_force)};
   return run_model_tests(argc, argv, tests);
 }

@@ -110,9 +110,9 @@ static void solve(const char *method, CellType cell, PetscInt n, PetscReal alpha
 static void convergence(const char *method, CellType cell)
 {
   PetscReal last[2] = {0, 0}, error[2], order[2] = {0, 0};
-  for (PetscInt n = 4; n <= 32; n *= 2) {
+  for (PetscInt n = 8; n <= 64; n *= 2) {
     solve(method, cell, n, 8, error);
-    for (int k = 0; k < 2 && n > 4; ++k) order[k] = log2(last[k] / error[k]);
+    for (int k = 0; k < 2 && n > 8; ++k) order[k] = log2(last[k] / error[k]);
     PetscPrintf(PETSC_COMM_WORLD,
                 "%s, cell %d, n = %2d: displacement %.3e m, order %.3f; pressure %.3e G, order %.3f\n", method,
                 (int)cell, (int)n, (double)error[0], (double)order[0], (double)error[1], (double)order[1]);

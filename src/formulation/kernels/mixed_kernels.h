@@ -20,13 +20,21 @@ KERNEL PetscReal projection_entry(const int dim, const int nn, int I, int J)
   return product - mean;
 }
 
-/* Over density: by how much the pressure that bears the weight is smaller (more compressive) at x + du than at the
- * origin. Its derivative makes the tangent unsymmetric and is left out of symmetric ones: beside the rest it is as the
- * weight of a cell to its stiffness. */
-KERNEL PetscReal pressure_depth(const int dim, const PetscReal *gravity, const PetscReal *x, const PetscReal *du)
+/* What pressures bear at point p, per mass, m/s2. */
+KERNEL void point_weight(const int dim, const WeakFormInput *in, PetscInt p, PetscReal weight[3])
+{
+  const PetscBool weighs = in->weighs[in->points->body[p]];
+  for (int d = 0; d < dim; ++d) weight[d] = weighs ? in->gravity[d] + (in->pull ? in->pull[3 * p + d] : 0) : 0;
+}
+
+/* By how much the pressure that bears the weight is smaller (more compressive) at x + du than at the origin, over what
+ * `weight` is times. A force need not have a potential: in a cell the mean one of its points counts, which has. Its
+ * derivative makes the tangent unsymmetric and is left out of symmetric ones: beside the rest it is as the weight of a
+ * cell to its stiffness. */
+KERNEL PetscReal pressure_depth(const int dim, const PetscReal *weight, const PetscReal *x, const PetscReal *du)
 {
   PetscReal depth = 0;
-  for (int d = 0; d < dim; ++d) depth += gravity[d] * (x[d] + du[d]);
+  for (int d = 0; d < dim; ++d) depth += weight[d] * (x[d] + du[d]);
   return depth;
 }
 

@@ -218,6 +218,17 @@ static PetscBool is_stiff(const Model *m, PetscReal dt)
   return model_is_pressed(m) || (m->scheme->inertia && m->method->restores_grid && crossed);
 }
 
+/* Pressures bear a caller's body force as they bear the weight. */
+static PetscErrorCode AskPull(Model *m, const NodalScene *scene)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PetscFree(m->pull));
+  if (!m->body_force || !m->formulation->pressure) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(3 * (size_t)m->points->n + 1, &m->pull));
+  PetscCall(BodyForceAsk(scene, m->pull));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
 {
   const PetscInt dofs = m->grid->n_nodes * m->dim;
@@ -247,6 +258,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   for (PetscInt i = 0; solved != 1 && i < dofs; ++i) m->nodes->prescribed[i] *= solved;
   const NodalScene scene = nodal_scene(m, t, m->nodes->du);
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_FALSE, m->nodes->external));
+  PetscCall(AskPull(m, &scene));
   frames_turn(&m->boundary->frames, m->dim, m->nodes->external);
   *p = (StepProblem){
     .grid = m->grid,
@@ -268,6 +280,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
     .weaker = m->strength.trying,
     .wide = m->space->basis->nodes != BASIS_OF_CELLS,
   };
+  p->in.pull = m->pull;
   p->in.half = m->symmetric && !m->space->support->n_runs;
   p->round_off = round_off_of(m, inertia);
   m->space->constraints->scale = node_stiffness(m, inertia);

@@ -34,22 +34,35 @@ static PetscErrorCode CreateBody(const NodalScene *scene, Diag *diag, void **dat
 }
 
 /* All points are asked for at once: a caller in another language pays for each call. */
-static PetscErrorCode AssembleBody(void *data, const NodalScene *scene, const NodalOutput *out)
+PetscErrorCode BodyForceAsk(const NodalScene *scene, PetscReal *b)
 {
   const PetscInt dim = scene->grid->dim;
-  const Points *points = data;
-  const Support *w = scene->support;
+  const Points *points = scene->points;
   const size_t n = 3 * (size_t)points->n;
-  PetscReal *X, *x, *b;
+  PetscReal *X, *x;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc3(n, &X, n, &x, n, &b));
+  PetscCall(PetscCalloc2(n, &X, n, &x));
   for (PetscInt i = 0; i < points->n * dim; ++i) {
     const PetscInt k = 3 * (i / dim) + i % dim;
     x[k] = points->real[POINT_X][i];
     X[k] = x[k] - points->real[POINT_U][i];
   }
   scene->body_force(scene->body_force_context, points->n, X, x, case_time(scene->c, scene->t), b);
+  PetscCall(PetscFree2(X, x));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode AssembleBody(void *data, const NodalScene *scene, const NodalOutput *out)
+{
+  const PetscInt dim = scene->grid->dim;
+  const Points *points = data;
+  const Support *w = scene->support;
+  PetscReal *b;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(3 * (size_t)points->n, &b));
+  PetscCall(BodyForceAsk(scene, b));
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
@@ -57,7 +70,7 @@ static PetscErrorCode AssembleBody(void *data, const NodalScene *scene, const No
         out->force[node[i / dim] * dim + i % dim] -=
           support_N(w, g, p)[i / dim] * points->real[POINT_MASS][p] * b[3 * p + i % dim];
   }
-  PetscCall(PetscFree3(X, x, b));
+  PetscCall(PetscFree(b));
   PetscFunctionReturn(0);
 }
 

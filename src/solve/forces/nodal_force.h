@@ -44,6 +44,9 @@ typedef struct {
   void *body_force_context;
 } NodalScene;
 
+/* What the caller's body force, which there is, gives the points of this rank: n x 3, zero on entry, m/s2. */
+PetscErrorCode BodyForceAsk(const NodalScene *scene, PetscReal *b);
+
 /* Where forces go. The sum over ranks comes later: a node that several ranks know gets its force
  * from one of them. */
 typedef struct {
