@@ -414,6 +414,87 @@ static void test_pulled(void **state)
   }
 }
 
+#define SHAKEN 0.02 /* s */
+static void ramp(void *context, PetscInt n, const PetscReal *X, const PetscReal *x, PetscReal t, PetscReal *b)
+{
+  (void)context;
+  (void)X;
+  (void)x;
+  for (PetscInt i = 0; i < n; ++i) b[3 * i] = 3 * t / SHAKEN, b[3 * i + 1] = -10 * t / SHAKEN;
+}
+
+/* A block that stands on held nodes under gravity that grows, or under the same as a body force: work, J, motion, m. */
+static void shake(const char *basis, CellType cell, ExplicitUpdate update, PetscBool force, PetscReal found[2])
+{
+  Bench b;
+  Energies e;
+  bench_init(&b, "mpm", cell, 0);
+  bench_grid(&b, (PetscReal[]){-1, 0, -1}, (PetscReal[]){2, 2, 2}, 0.25);
+  explicit_case(&b, SHAKEN, 2e-3);
+  b.c.basis.kind = basis;
+  b.c.analysis.update = update;
+  for (int d = 0; d < 2 && !force; ++d) b.c.gravity[d] = d ? -10 : 3;
+  b.c.gravity_amplitude = (Amplitude){.n = 2, .time = (PetscReal[]){0, SHAKEN}, .value = (PetscReal[]){0, 1}};
+  bench_motion(&b, 1, 0, MOTION_FIXED, 7);
+  bench_tracer(&b, "displacement", 1, 0.5, 0.9, 0.5);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  if (force) CALL(ModelSetBodyForce(m, ramp, NULL));
+  while (m->time < SHAKEN - 1e-9) model_step(m, PETSC_MAX_REAL);
+  CALL(ModelEnergies(m, &e));
+  CALL(ModelMeasure(m, &b.measure[0], 0, &found[1]));
+  found[0] = e.external;
+  CALL(ModelDestroy(&m));
+}
+
+/* The work of a body force is that along the way of the points, also where nodes are held. */
+static void test_work_of_a_body_force(void **state)
+{
+  static const struct {
+    const char *basis;
+    CellType cell;
+    ExplicitUpdate update;
+  } variants[] = {{"gimp", CELL_QUADRILATERAL, EXPLICIT_MUSL},
+                  {"cell", CELL_QUADRILATERAL, EXPLICIT_MUSL},
+                  {"cell", CELL_QUADRILATERAL, EXPLICIT_USL},
+                  {"bspline", CELL_QUADRILATERAL, EXPLICIT_MUSL},
+                  {"gimp", CELL_HEXAHEDRON, EXPLICIT_MUSL}};
+  (void)state;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(variants); ++k) {
+    PetscReal weight[2], force[2];
+    shake(variants[k].basis, variants[k].cell, variants[k].update, PETSC_FALSE, weight);
+    shake(variants[k].basis, variants[k].cell, variants[k].update, PETSC_TRUE, force);
+    PetscPrintf(PETSC_COMM_WORLD, "%s: %.8g J and %.8g m by gravity, %.8g J and %.8g m by a force\n", variants[k].basis,
+                (double)weight[0], (double)weight[1], (double)force[0], (double)force[1]);
+    CHECK_CLOSE(force[1], weight[1], 1e-5 * PetscAbsReal(weight[1]));
+    CHECK_CLOSE(force[0], weight[0], 2e-5 * weight[0]);
+  }
+}
+
+/* A block that flies over the lines of the grid and is pushed from behind: what comes in is what it has then. */
+static void test_work_in_flight(void **state)
+{
+  static const char *const bases[] = {"cell", "gimp", "bspline"};
+  (void)state;
+  EACH_OF (k, bases) {
+    Bench b;
+    Energies e;
+    bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
+    bench_grid(&b, (PetscReal[]){0, 0, 0}, (PetscReal[]){4, 2, 0}, 0.25);
+    bench_box(&b, 0, (PetscReal[]){0.5, 0.5, 0}, (PetscReal[]){1.5, 1.5, 0});
+    explicit_case(&b, 1, 2e-3);
+    b.c.basis.kind = bases[k];
+    b.body[0].velocity[0] = 30;
+    bench_traction(&b, 0, 0.5, "body", 2000, 0, 0);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    while (m->time < 0.04 - 1e-9) model_step(m, PETSC_MAX_REAL);
+    CALL(ModelEnergies(m, &e));
+    const PetscReal exact = 2000 * (30 * 0.04 + 0.5 * 2 * PetscSqr(0.04)); /* of a rigid block, J */
+    PetscPrintf(PETSC_COMM_WORLD, "%s: %.8g J for %.8g\n", bases[k], (double)e.external, (double)exact);
+    CHECK_CLOSE(e.external, exact, 2e-3 * exact);
+    CALL(ModelDestroy(&m));
+  }
+}
+
 static void test_refused(void **state)
 {
   Bench b;
@@ -434,11 +515,19 @@ static void test_refused(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_flight),  cmocka_unit_test(test_turns),  cmocka_unit_test(test_turns_damped),
-    cmocka_unit_test(test_bounce),  cmocka_unit_test(test_ranks),  cmocka_unit_test(test_walks),
-    cmocka_unit_test(test_resumed), cmocka_unit_test(test_ages),   cmocka_unit_test(test_pressed),
-    cmocka_unit_test(test_pulled),  cmocka_unit_test(test_refused)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_flight),
+                                     cmocka_unit_test(test_turns),
+                                     cmocka_unit_test(test_turns_damped),
+                                     cmocka_unit_test(test_bounce),
+                                     cmocka_unit_test(test_ranks),
+                                     cmocka_unit_test(test_walks),
+                                     cmocka_unit_test(test_resumed),
+                                     cmocka_unit_test(test_ages),
+                                     cmocka_unit_test(test_pressed),
+                                     cmocka_unit_test(test_pulled),
+                                     cmocka_unit_test(test_work_of_a_body_force),
+                                     cmocka_unit_test(test_work_in_flight),
+                                     cmocka_unit_test(test_refused)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

@@ -129,40 +129,9 @@ KERNEL void move(const int dim, const Model *m, const Explicit *e)
   }
 }
 
-/* Half of the work of loads over the substep that ends, with the forces that they have now: those of its start have had
- * the other half, so that what varies or turns meanwhile has the mean of both. */
-KERNEL void end_work(const int dim, const Model *m, Explicit *e)
+/* Velocities of what is prescribed in the next dt, < 0: in the last, s. */
+static void prescribe(Model *m, Explicit *e, PetscReal dt)
 {
-  PetscReal power = 0;
-  for (PetscInt k = 0; k < e->n_active; ++k) {
-    const PetscInt node = e->active[k];
-    const PetscReal *s = e->sum + node * (1 + 2 * dim), inverse = s[0] > 1e-300 ? 1 / s[0] : 0;
-    if (node >= m->grid->n_owned) continue;
-    for (int d = 0; d < dim; ++d) power += m->nodes->external[node * dim + d] * inverse * s[1 + d];
-  }
-  e->external += 0.5 * e->before * power;
-}
-
-PetscErrorCode NodesMove(Model *m, Explicit *e)
-{
-  PetscFunctionBeginUser;
-  gravity_at(m->c, e->time, e->g);
-  if (e->box && m->c->n_loads) PetscCall(Carry(m));
-  PetscCall(Touch(m, e));
-  PetscCall(AddLoads(m, e));
-  PetscCall(SumsGive(m, e));
-  if (e->loaded) PetscCall(NodesGive(m, e, m->dim, m->nodes->external));
-  if (e->loaded && m->dim == 2) end_work(2, m, e);
-  if (e->loaded && m->dim == 3) end_work(3, m, e);
-  if (m->dim == 2) move(2, m, e);
-  else move(3, m, e);
-  PetscFunctionReturn(0);
-}
-
-/* Velocities of what is prescribed in this substep; where points do not move, those of the last one. */
-static void prescribe(Model *m, Explicit *e)
-{
-  const PetscReal dt = e->dt > 0 ? e->dt : -e->before;
   PetscReal *increment = m->nodes->prescribed;
   if (!e->moved && !m->boundary->field) return;
   for (PetscInt k = 0; k < e->n_held; ++k) increment[e->held[k].node * m->dim + e->held[k].axis] = 0;
@@ -190,10 +159,48 @@ static PetscReal hold(const Model *m, const Held *h, PetscReal *v, PetscReal cha
   return by;
 }
 
+/* Half of the work of loads over the substep that ends, with the forces that they have now: those of its start have had
+ * the other half, so that what varies or turns meanwhile has the mean of both. The way is that of the points; where they
+ * go as they are strained, held nodes go as prescribed. */
+KERNEL void end_work(const int dim, Model *m, Explicit *e)
+{
+  PetscReal power = 0, change[3];
+  for (PetscInt k = 0; k < e->n_active; ++k) {
+    const PetscInt node = e->active[k];
+    const PetscReal *s = e->sum + node * (1 + 2 * dim), inverse = s[0] > 1e-300 ? 1 / s[0] : 0;
+    for (int d = 0; d < dim; ++d) e->motion[node * 2 * dim + d] = inverse * s[1 + d];
+  }
+  if (e->as_strained && e->before > 0) prescribe(m, e, -e->before);
+  for (const Held *h = e->held; e->as_strained && h < e->held + e->n_held; ++h)
+    (void)hold(m, h, e->motion + h->node * 2 * dim, change);
+  for (PetscInt k = 0; k < e->n_active; ++k) {
+    const PetscInt node = e->active[k];
+    for (int d = 0; d < dim && node < m->grid->n_owned; ++d)
+      power += m->nodes->external[node * dim + d] * e->motion[node * 2 * dim + d];
+  }
+  e->external += 0.5 * e->before * power;
+}
+
+PetscErrorCode NodesMove(Model *m, Explicit *e)
+{
+  PetscFunctionBeginUser;
+  gravity_at(m->c, e->time, e->g);
+  if (e->box && m->c->n_loads) PetscCall(Carry(m));
+  PetscCall(Touch(m, e));
+  PetscCall(AddLoads(m, e));
+  PetscCall(SumsGive(m, e));
+  if (e->loaded) PetscCall(NodesGive(m, e, m->dim, m->nodes->external));
+  if (e->loaded && m->dim == 2) end_work(2, m, e);
+  if (e->loaded && m->dim == 3) end_work(3, m, e);
+  if (m->dim == 2) move(2, m, e);
+  else move(3, m, e);
+  PetscFunctionReturn(0);
+}
+
 void nodes_hold(Model *m, Explicit *e)
 {
   const PetscInt dim = m->dim;
-  prescribe(m, e);
+  prescribe(m, e, e->dt > 0 ? e->dt : -e->before); /* where points do not move: of the last substep */
   for (const Held *h = e->held; h < e->held + e->n_held; ++h) {
     PetscReal *v = e->motion + h->node * 2 * dim, change[3];
     const PetscReal mass = e->sum[h->node * e->width] * e->kick / e->act; /* for the force that it takes */
