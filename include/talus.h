@@ -296,7 +296,8 @@ int TalusCaseMeasureName(const TalusCase *c, int i, const char **name, const cha
  * Collective.
  *
  * SIGINT, SIGTERM, SIGQUIT, SIGHUP, SIGUSR1, SIGUSR2 and SIGXCPU end the run with its state
- * written; a step that has not converged by then is given up.
+ * written; a step that has not converged by then is given up. The program's own handlers are back
+ * when the function returns.
  *
  * With #TALUS_RUN_RESUME the run that is in `out` goes on, as with `talus run --resume`; c is then
  * the file case.yaml in `out`, opened with TalusCaseOpen() (its `set` may change `checkpoint`,

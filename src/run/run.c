@@ -426,8 +426,9 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
   if (options->warnings) PetscCall(DiagFlush(diag, options->warnings));
   signals_watch();
   run.model->asked = signals_came;
-  PetscCall(RunModel(&run, options, diag, measures, result));
+  const PetscErrorCode code = RunModel(&run, options, diag, measures, result);
   signals_forget();
+  PetscCall(code);
   PetscCall(StrengthRunDestroy(&run.strength));
   PetscCall(LimitRunDestroy(&run.limit));
   PetscCall(RunMeasuresEnd(&run));

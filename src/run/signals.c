@@ -20,6 +20,7 @@ static const struct {
 static volatile sig_atomic_t asked_by;
 /* Signals are the process's: what was there, to be put back. */
 static struct sigaction before[N_WATCHED];
+static int watching; /* runs: one may begin another in what its caller watches it with */
 
 static struct timespec first_term;
 
@@ -56,6 +57,7 @@ static PetscBool is_left(size_t k) { return watched[k].optional && before[k].sa_
 void signals_watch(void)
 {
   struct sigaction action = {.sa_flags = SA_RESTART};
+  if (watching++) return;
   sigemptyset(&action.sa_mask);
   asked_by = 0;
   first_term = (struct timespec){0};
@@ -68,14 +70,16 @@ void signals_watch(void)
 
 PetscBool signals_came(void) { return asked_by != 0; }
 
-/* One that insisted keeps its default; else a program that embeds talus has its own handlers
- * again. */
+/* A program that embeds talus has its own handlers again, also of what has come and would insist; but one that it has
+ * set meanwhile stays. */
 void signals_forget(void)
 {
   struct sigaction now;
+  if (--watching) return;
   for (size_t k = 0; k < N_WATCHED; ++k) {
     sigaction(watched[k].number, NULL, &now);
-    if (now.sa_handler == handler(k)) sigaction(watched[k].number, &before[k], NULL);
+    if (now.sa_handler == handler(k) || (now.sa_handler == SIG_DFL && watched[k].insists))
+      sigaction(watched[k].number, &before[k], NULL);
   }
 }
 

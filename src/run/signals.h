@@ -6,6 +6,7 @@
 /* Watch from now on; a second SIGINT, SIGTERM or SIGQUIT ends the program at once, but
  * for a SIGTERM within a second of the first: that is the same ask. */
 void signals_watch(void);
+/* All signals are again whose they were. */
 void signals_forget(void);
 /* Has one come to this rank? */
 PetscBool signals_came(void);

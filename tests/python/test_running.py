@@ -5,6 +5,7 @@ import re
 import signal
 import subprocess
 import sys
+import time
 import unittest
 import warnings
 from pathlib import Path
@@ -170,6 +171,9 @@ class Running(InFolder):
         with self.assertRaisesRegex(KeyboardInterrupt, "by a signal, after step 3"):
             endless.run("endless", progress=lambda step, time, end: step == 3 and os.kill(os.getpid(), signal.SIGINT))
         self.assertEqual(talus.open("endless").outcome, "interrupted")
+        with self.assertRaises(KeyboardInterrupt):  # Python has its own handler again
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(1)
 
         def interrupt(step, time):
             raise KeyboardInterrupt
@@ -205,6 +209,19 @@ class Running(InFolder):
         with self.assertRaises(ZeroDivisionError):
             case.run("raised-force")
         self.assertLessEqual(talus.open("raised-force").summary["steps"], 1)
+
+    def test_a_run_within_a_run_leaves_the_signals_alone(self):
+        def begin_another(step, time, end):
+            if step == 1:
+                block(**{"analysis.end": 0.004}).run("within")
+            return step == 2 and os.kill(os.getpid(), signal.SIGINT)
+
+        with self.assertRaisesRegex(KeyboardInterrupt, "by a signal, after step 2"):
+            block(**{"analysis.end": 1e3}).run("around", progress=begin_another)
+        self.assertEqual(talus.open("within").outcome, "done")
+        with self.assertRaises(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(1)
 
     def test_no_step_is_taken_with_a_force_that_raises(self):
         def fail(X, x, t):
