@@ -22,6 +22,8 @@
  *   case's. Messages of talus cannot meet the program's own. Not thread-safe: one thread at a time.
  * - **Units** are SI. Stress is positive in tension, pressure in compression; symmetric tensors are
  *   stored in the order xx yy zz xy yz zx. Plane strain has unit thickness.
+ * - **Numbers in texts** have a point, whatever the program's locale: calls work in the "C" locale of
+ *   their thread, as do the functions of the program that they ask, and give the other one back.
  *
  * @example ten_lines.c
  * Runs the case file that its argument names and prints the final value of every measure.

@@ -1,6 +1,6 @@
 /* What the files of the public interface share. A public function checks its arguments, calls a
- * function that returns a PetscErrorCode like all others of this program, and translates the
- * code. */
+ * function that returns a PetscErrorCode like all others of this program by TALUS_CALL, which
+ * translates the code. */
 #pragma once
 #include <petscsys.h>
 #include "talus.h"
@@ -37,8 +37,11 @@ struct TalusCase {
   void *progress_context;
 };
 
-/* PETSc's code as one of ours. */
-int talus_code(PetscErrorCode code);
+/* PETSc's code as one of ours. The call is made in the "C" locale, as the program runs: a caller's may have commas in
+ * its numbers. The C library keeps that locale and makes it once. */
+#define TALUS_CALL(call) (talus_enter(), talus_leave(call))
+void talus_enter(void);
+int talus_leave(PetscErrorCode code);
 /* Does PETSc run? Before anything else of PETSc may be called. */
 PetscBool talus_is_running(void);
 /* Collective. Print what was collected on stderr, or hand it to all ranks as text. */

@@ -42,7 +42,7 @@ static int open_checked(MPI_Comm comm, const char *file, const char *text, int n
   if (comm == MPI_COMM_NULL || !file || n_set < 0 || (n_set > 0 && !set)) return TALUS_ERROR_ARGUMENT;
   for (int i = 0; i < n_set; ++i)
     if (!set[i]) return TALUS_ERROR_ARGUMENT;
-  const int error = talus_code(Open(comm, file, text, n_set, set, c, messages));
+  const int error = TALUS_CALL(Open(comm, file, text, n_set, set, c, messages));
   if (error) return error;
   return *c ? TALUS_OK : TALUS_ERROR_INPUT;
 }
@@ -62,7 +62,7 @@ int TalusCaseClose(TalusCase **c)
 {
   if (!c || !*c) return TALUS_OK;
   if (!talus_is_running()) return TALUS_ERROR_STATE;
-  return (*c)->busy ? TALUS_ERROR_BUSY : talus_code(Close(c));
+  return (*c)->busy ? TALUS_ERROR_BUSY : TALUS_CALL(Close(c));
 }
 
 int TalusCaseTrust(TalusCase *c)
@@ -87,7 +87,7 @@ static PetscErrorCode Text(const Case *c, char **text)
 int TalusCaseText(const TalusCase *c, char **text)
 {
   if (!c || !text) return TALUS_ERROR_ARGUMENT;
-  return talus_is_running() ? talus_code(Text(c->c, text)) : TALUS_ERROR_STATE;
+  return talus_is_running() ? TALUS_CALL(Text(c->c, text)) : TALUS_ERROR_STATE;
 }
 
 int TalusCaseSetBodyForces(TalusCase *c, TalusBodyForces force, void *context)

@@ -44,10 +44,10 @@ static PetscErrorCode SetFactors(TalusModel *m, PetscInt load, TalusFactors fact
 }
 
 /* What was done while the model was busy has ended so. */
-static int done(TalusModel *model, PetscErrorCode code)
+static int done(TalusModel *model, int error)
 {
   model->busy = PETSC_FALSE;
-  return talus_code(code);
+  return error;
 }
 
 static PetscErrorCode Destroy(TalusModel **model)
@@ -63,7 +63,7 @@ int TalusModelDestroy(TalusModel **model)
 {
   if (!model || !*model) return TALUS_OK;
   if (!talus_is_running()) return TALUS_ERROR_STATE;
-  return (*model)->busy ? TALUS_ERROR_BUSY : talus_code(Destroy(model));
+  return (*model)->busy ? TALUS_ERROR_BUSY : TALUS_CALL(Destroy(model));
 }
 
 static PetscErrorCode Equilibrate(TalusCase *c, TalusModel *made)
@@ -108,7 +108,7 @@ int TalusModelCreate(TalusCase *c, TalusModel **model, char **messages)
   if (!c) return TALUS_ERROR_ARGUMENT;
   if (c->busy) return TALUS_ERROR_BUSY;
   c->busy = PETSC_TRUE;
-  const int error = talus_code(Create(c, model, messages));
+  const int error = TALUS_CALL(Create(c, model, messages));
   c->busy = PETSC_FALSE;
   if (error) return error;
   return *model ? TALUS_OK : TALUS_ERROR_INPUT;
@@ -128,7 +128,7 @@ int TalusModelSetBodyForce(TalusModel *model, TalusBodyForce force, void *contex
   model->busy = PETSC_TRUE;
   model->single = force;
   model->single_context = context;
-  return done(model, SetForce(model, force ? point_by_point : NULL, model));
+  return done(model, TALUS_CALL(SetForce(model, force ? point_by_point : NULL, model)));
 }
 
 int TalusModelSetBodyForces(TalusModel *model, TalusBodyForces force, void *context)
@@ -136,7 +136,7 @@ int TalusModelSetBodyForces(TalusModel *model, TalusBodyForces force, void *cont
   if (!model) return TALUS_ERROR_ARGUMENT;
   if (model->busy) return TALUS_ERROR_BUSY;
   model->busy = PETSC_TRUE;
-  return done(model, SetForce(model, force, context));
+  return done(model, TALUS_CALL(SetForce(model, force, context)));
 }
 
 int TalusModelSetLoadFactors(TalusModel *model, const char *load, TalusLoadFactors factors, void *context)
@@ -146,7 +146,7 @@ int TalusModelSetLoadFactors(TalusModel *model, const char *load, TalusLoadFacto
   const PetscInt k = talus_load_index(model->model->c, load);
   if (k < 0) return TALUS_ERROR_UNKNOWN;
   model->busy = PETSC_TRUE;
-  return done(model, SetFactors(model, k, (TalusFactors){factors, context}));
+  return done(model, TALUS_CALL(SetFactors(model, k, (TalusFactors){factors, context})));
 }
 
 static TalusStep step_of(StepOutcome outcome)
@@ -180,7 +180,7 @@ int TalusModelStep(TalusModel *model, double limit, TalusStep *step)
     return TALUS_OK;
   }
   model->busy = PETSC_TRUE;
-  const int error = done(model, Step(model, limit > 0 ? limit : end - model->model->time));
+  const int error = done(model, TALUS_CALL(Step(model, limit > 0 ? limit : end - model->model->time)));
   if (!error) *step = step_of(model->report.outcome);
   return error;
 }
@@ -201,7 +201,7 @@ int TalusModelMeasure(const TalusModel *model, const char *name, double *value)
   if (!model || !name || !value) return TALUS_ERROR_ARGUMENT;
   const PetscInt i = talus_measure_index(model->model->c, name);
   if (i < 0) return TALUS_ERROR_UNKNOWN;
-  const int error = talus_code(ModelMeasure(model->model, &model->model->c->measures[i], i, &now));
+  const int error = TALUS_CALL(ModelMeasure(model->model, &model->model->c->measures[i], i, &now));
   if (!error) *value = now;
   return error;
 }
@@ -239,7 +239,7 @@ int TalusModelPoints(const TalusModel *model, const char *field, int *n, int *co
   if (components) *components = (int)k;
   if (!buffer) return TALUS_OK;
   if (capacity < (size_t)count * (size_t)k) return TALUS_ERROR_ARGUMENT;
-  return talus_code(CopyField(model->model, field, buffer));
+  return TALUS_CALL(CopyField(model->model, field, buffer));
 }
 
 /* Arrays of the points that are shown as they are; those that may be written carry the motion or
@@ -280,5 +280,5 @@ int TalusModelChanged(TalusModel *model)
   if (!model) return TALUS_ERROR_ARGUMENT;
   if (model->busy) return TALUS_ERROR_BUSY;
   model->busy = PETSC_TRUE;
-  return done(model, ModelPointsChanged(model->model));
+  return done(model, TALUS_CALL(ModelPointsChanged(model->model)));
 }

@@ -106,7 +106,7 @@ int TalusRunCase(TalusCase *c, const char *out, unsigned flags, TalusRun **run, 
   TalusRun *made = create_run(c->c);
   if (!made) return TALUS_ERROR_MEMORY;
   c->busy = PETSC_TRUE;
-  int error = talus_code(Run(c, &options, made, &result, messages));
+  int error = TALUS_CALL(Run(c, &options, made, &result, messages));
   c->busy = PETSC_FALSE;
   if (!error && result == RUN_BAD_INPUT) error = TALUS_ERROR_INPUT;
   made->outcome = result == RUN_DONE ? TALUS_DONE : TALUS_GAVE_UP;

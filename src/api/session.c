@@ -1,5 +1,6 @@
 /* Start and end, errors in words, texts. */
 #include <limits.h>
+#include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include "api/api.h"
@@ -26,7 +27,7 @@ const char *talus_error_string(int error)
   }
 }
 
-int talus_code(PetscErrorCode code)
+static int code_of(PetscErrorCode code)
 {
   switch (code) {
   case 0: return TALUS_OK;
@@ -36,6 +37,21 @@ int talus_code(PetscErrorCode code)
   case PETSC_ERR_FILE_WRITE: return TALUS_ERROR_OUTPUT;
   default: return TALUS_ERROR_INTERNAL;
   }
+}
+
+/* The caller's while a call is at work: a function that it asks may call again. */
+static _Thread_local locale_t callers;
+static _Thread_local int depth;
+
+void talus_enter(void)
+{
+  if (!depth++) callers = uselocale(newlocale(LC_ALL_MASK, "C", (locale_t)0));
+}
+
+int talus_leave(PetscErrorCode code)
+{
+  if (!--depth) uselocale(callers);
+  return code_of(code);
 }
 
 PetscBool talus_is_running(void)
@@ -50,13 +66,13 @@ int TalusInitialize(int *argc, char ***argv)
   PetscBool started, ended;
   if (PetscInitialized(&started) || PetscFinalized(&ended) || started || ended) return TALUS_ERROR_STATE;
   threads_one_per_rank();
-  return talus_code(StartPetsc(argc, argv));
+  return TALUS_CALL(StartPetsc(argc, argv));
 }
 
 int TalusFinalize(void)
 {
   if (!talus_is_running()) return TALUS_ERROR_STATE;
-  return talus_code(PetscFinalize());
+  return TALUS_CALL(PetscFinalize());
 }
 
 int TalusRanks(MPI_Comm comm, int *rank, int *size)

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -222,6 +223,20 @@ class Running(InFolder):
         with self.assertRaises(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGINT)
             time.sleep(1)
+
+    def test_a_locale_with_commas(self):
+        """Numbers are read and written with points, and the caller has its locale again."""
+        os.mkdir("locales")
+        made = subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", "locales/de_DE.UTF-8"], capture_output=True) \
+            if shutil.which("localedef") else None
+        if made is None or made.returncode:
+            self.skipTest("there is no localedef, or no German")
+        code = ("import locale, sys, talus\nlocale.setlocale(locale.LC_ALL, 'de_DE.UTF-8')\ncase = talus.Case(sys.argv[1])\n"
+                "case['analysis.end'] = 0.004\nrun = case.run('commas')\nwith case.model() as model: model.step()\n"
+                "print(run.history.time[-1], case['analysis.step'], locale.str(0.5))")
+        done = subprocess.run([sys.executable, "-c", code, str(BLOCK)], capture_output=True, text=True,
+                              env=dict(os.environ, LOCPATH=os.path.abspath("locales")))
+        self.assertEqual((done.stdout, done.returncode), ("0.004 0.002 0,5\n", 0), done.stderr)
 
     def test_no_step_is_taken_with_a_force_that_raises(self):
         def fail(X, x, t):
