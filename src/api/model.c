@@ -160,11 +160,15 @@ static TalusStep step_of(StepOutcome outcome)
   return TALUS_STEP_ACCEPTED;
 }
 
-/* Points keep their order and their ranks until the next step, whatever is asked of them. */
+/* Points keep their order and their ranks until the next step, whatever is asked of them. A caller may mend why a step
+ * failed, a function of its own for one: the next try begins with the same length. */
 static PetscErrorCode Step(TalusModel *model, PetscReal limit)
 {
+  const StepControl control = model->model->control;
+
   PetscFunctionBeginUser;
   PetscCall(ModelStep(model->model, limit, &model->report));
+  if (model->report.outcome == STEP_TOO_SMALL) model->model->control = control;
   PetscCall(ModelInitialise(model->model));
   PetscFunctionReturn(0);
 }
