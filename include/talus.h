@@ -66,7 +66,8 @@ typedef enum TalusOutcome {
 /** What became of a step. */
 typedef enum TalusStep {
   TALUS_STEP_ACCEPTED = 0, /**< The model is one step further. */
-  TALUS_STEP_AT_END = 1,   /**< The case's end time was reached before; nothing happened. */
+  /** The case's end time, or a condition of its `analysis.until`, was reached before; nothing happened. */
+  TALUS_STEP_AT_END = 1,
   /** No convergence down to the smallest step; the model is as it was. */
   TALUS_STEP_TOO_SMALL = 2,
   TALUS_STEP_POINTS_LOST = 3 /**< Accepted, but points left the grid and the case says to stop. */
@@ -373,9 +374,8 @@ int TalusModelSetLoadFactors(TalusModel *model, const char *load, TalusLoadFacto
 /**
  * @brief Advance by one step, halved until Newton's method converges. Collective.
  * @param model  the model
- * @param limit  s, the longest step to take, even beyond the end of the case; 0: as the case's step
- *   control
- * chooses, and up to its end
+ * @param limit  s, the longest step to take, even beyond the end of the case and what its
+ *   `analysis.until` asks for; 0: as the case's step control chooses, and up to its end
  * @param step   result; anything but #TALUS_STEP_ACCEPTED ends the loop of most programs
  * @return #TALUS_OK, also where the step failed; #TALUS_ERROR_ARGUMENT for a limit that is negative
  *   or no
@@ -383,8 +383,8 @@ int TalusModelSetLoadFactors(TalusModel *model, const char *load, TalusLoadFacto
  */
 int TalusModelStep(TalusModel *model, double limit, TalusStep *step);
 
-/** @brief Why the last step failed, in words; "" if it did not. The model owns it until its next
- * step. */
+/** @brief Why the last step failed, or which condition of `analysis.until` has ended the case, in
+ * words; "" else. The model owns it until its next step. */
 const char *TalusModelReason(const TalusModel *model);
 
 /**

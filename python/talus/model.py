@@ -226,10 +226,11 @@ class Model:
         self._callbacks.raise_kept()
 
     def step(self, limit=0.0):
-        """One step, halved until Newton's method converges; returns False if the end was reached before.
+        """One step, halved until Newton's method converges; returns False if the end was reached before, or a
+        condition of the case's `analysis.until`.
 
-        `limit` [s] is the longest step to take, even beyond the end of the case; 0: as the case's step control
-        chooses, up to its end. RunError: no step converged (the model is as it was), or points were lost. What a
+        `limit` [s] is the longest step to take, even beyond either end; 0: as the case's step control
+        chooses, up to them. RunError: no step converged (the model is as it was), or points were lost. What a
         function of a force raises is raised here: no step is taken (of explicit ones a part is, and no other after it).
         Collective.
         """

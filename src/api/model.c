@@ -4,10 +4,12 @@
 #include "api/api.h"
 #include "case/fields.h"
 #include "run/output/output.h"
+#include "run/watch/until.h"
 
 struct TalusModel {
   Model *model;
   StepReport report;
+  Until until;
   PetscBool busy; /* where functions of the caller may be asked, which must not change the model then */
   TalusForce force;
   TalusFactors *factors; /* of each load */
@@ -54,6 +56,7 @@ static PetscErrorCode Destroy(TalusModel **model)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree((*model)->factors));
+  PetscCall(UntilDestroy(&(*model)->until));
   PetscCall(ModelDestroy(&(*model)->model));
   PetscCall(PetscFree(*model));
   PetscFunctionReturn(0);
@@ -76,6 +79,15 @@ static PetscErrorCode Equilibrate(TalusCase *c, TalusModel *made)
   PetscFunctionReturn(0);
 }
 
+/* Does a condition end it here? */
+static PetscErrorCode LookForEnd(TalusModel *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(UntilLook(&m->until, m->model));
+  until_reason(&m->until, m->model->c, m->report.reason);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
 {
   TalusModel *made;
@@ -93,6 +105,8 @@ static PetscErrorCode Create(TalusCase *c, TalusModel **model, char **messages)
   for (PetscInt k = 0; made->model && k < c->c->n_loads; ++k)
     if (c->factors[k].factors) PetscCall(SetFactors(made, k, c->factors[k]));
   if (made->model) PetscCall(Equilibrate(c, made));
+  PetscCall(UntilCreate(c->c, &made->until));
+  if (made->model) PetscCall(LookForEnd(made));
   PetscCall(TalusTell(c->comm, c->diag, messages));
   if (made->model) *model = made;
   else PetscCall(Destroy(&made));
@@ -170,21 +184,27 @@ static PetscErrorCode Step(TalusModel *model, PetscReal limit)
   PetscCall(ModelStep(model->model, limit, &model->report));
   if (model->report.outcome == STEP_TOO_SMALL) model->model->control = control;
   PetscCall(ModelInitialise(model->model));
+  if (model->report.outcome == STEP_ACCEPTED) PetscCall(LookForEnd(model));
   PetscFunctionReturn(0);
+}
+
+static PetscBool is_at_end(const TalusModel *m)
+{
+  return (PetscBool)(m->until.ended > 0 || m->model->time >= m->model->c->analysis.end * (1 - 1e-12));
 }
 
 int TalusModelStep(TalusModel *model, double limit, TalusStep *step)
 {
   if (!model || !step || !(limit >= 0)) return TALUS_ERROR_ARGUMENT;
   if (model->busy) return TALUS_ERROR_BUSY;
-  const PetscReal end = model->model->c->analysis.end;
-  if (limit == 0 && model->model->time >= end * (1 - 1e-12)) {
-    model->report.reason[0] = '\0';
+  if (limit == 0 && is_at_end(model)) {
+    if (!model->until.ended) model->report.reason[0] = '\0';
     *step = TALUS_STEP_AT_END;
     return TALUS_OK;
   }
   model->busy = PETSC_TRUE;
-  const int error = done(model, TALUS_CALL(Step(model, limit > 0 ? limit : end - model->model->time)));
+  const int error =
+    done(model, TALUS_CALL(Step(model, limit > 0 ? limit : model->model->c->analysis.end - model->model->time)));
   if (!error) *step = step_of(model->report.outcome);
   return error;
 }

@@ -254,6 +254,18 @@ class Running(InFolder):
             self.assertTrue(model.step())
             self.assertEqual(model.time, 0.002)  # as long as it would have been
 
+    def test_a_model_ends_as_its_run(self):
+        """With a condition of `until`; whoever asks for a step of a given length goes on."""
+        case = block(**{"analysis.end": 0.1, "analysis.until": [{"measure": "top", "below": -1e-4}]})
+        run = case.run("until").history
+        self.assertLess(run.time[-1], 0.09)
+        with case.model() as model:
+            while model.step():
+                pass
+            self.assertEqual((model.time, model.measures["top"]), (run.time[-1], run.last["top"]))
+            self.assertIn("top fell below -0.0001 m", library().text("TalusModelReason", model.handle))
+            self.assertTrue(model.step(1e-3))
+
     def test_body_force_is_gravity(self):
         light = block(**{"loads.gravity": [0, 0]})
         light.body_force = lambda X, x, t: np.tile([0, -9.81, 0], (len(X), 1))
