@@ -27,6 +27,16 @@ def _numbers(what, answer):
     return np.asarray(answer, dtype=float)
 
 
+def _of_points(force, n):
+    """Forces of n points as (2,), (3,), (1, 2), (1, 3), (n, 2) or (n, 3); 0 is none."""
+    if not force.ndim and force == 0:
+        return np.zeros(3)
+    if force.ndim not in (1, 2) or force.shape[-1] not in (2, 3) or force.shape[:-1] not in ((), (1,), (n,)):
+        raise TalusError(f"the function of body_force returned numbers of shape {force.shape} for {n} points: it "
+                         "returns one vector for all, of 2 or 3 numbers, or one for each, (n, 2) or (n, 3)")
+    return force
+
+
 _UNLIKE_VECTORS = 4  # places: numbers for so many are no vector
 
 
@@ -76,7 +86,8 @@ class Callbacks:
         def ask(_, n, X, x, t, b):
             def force_of(wanted):
                 force = _numbers("body_force", function(_places(X, n), _places(x, n), t))
-                wanted[:, :force.shape[-1] if force.ndim else 3] = force
+                force = _of_points(force, n) if n else wanted  # of no points any shape will do
+                wanted[:, :force.shape[-1]] = force
 
             self._fill(_view(b, n), force_of)
 

@@ -173,8 +173,8 @@ class Model:
         t is the time of the balance that is solved, s: the middle of the step with the midpoint scheme (the default
         of elastic bodies with gimp and splines), the start of each substep in explicit dynamics, else the end of the
         step. Calls for what a step begins or ends with come besides, and each try of a step has its own: let the
-        answer depend on X, x and t alone. It returns one vector for all points, or what can be put into (n, 3) or
-        (n, 2).
+        answer depend on X, x and t alone. It returns one vector for all points, of 2 or 3 numbers, or one for each,
+        (n, 2) or (n, 3); 0 is no force.
 
         >>> with talus.Case(block).model() as model:
         ...     model.body_force = lambda X, x, t: [3 * t, 0]

@@ -254,6 +254,16 @@ class Running(InFolder):
             self.assertTrue(model.step())
             self.assertEqual(model.time, 0.002)  # as long as it would have been
 
+    def test_what_a_body_force_may_return(self):
+        with block(**{"loads.gravity": [0, 0]}).model() as model:
+            n = len(model.points["mass"])
+            for answer in (5.0, [5.0], [], [[5.0]], np.ones((n, 1)), np.ones((n, 0)), np.ones((n - 1, 2)), np.ones((1, n, 2))):
+                with self.assertRaisesRegex(talus.TalusError, "returned numbers of shape"):
+                    model.body_force = lambda X, x, t, answer=answer: answer
+            for answer in (0, [1, 2], [1, 2, 0], [[1, 2]], np.ones((n, 2)), np.ones((n, 3))):
+                model.body_force = lambda X, x, t, answer=answer: answer
+                self.assertTrue(model.step(1e-3))
+
     def test_a_model_ends_as_its_run(self):
         """With a condition of `until`; whoever asks for a step of a given length goes on."""
         case = block(**{"analysis.end": 0.1, "analysis.until": [{"measure": "top", "below": -1e-4}]})
