@@ -232,10 +232,8 @@ class Case:
 
         ended, messages, outcome = ctypes.c_void_p(), ctypes.c_void_p(), ctypes.c_int()
         with self.opened() as handle:
-            hooks = callbacks.body_force(self.body_force), callbacks.progress(watch)
-            lib.call("TalusCaseSetBodyForces", handle, hooks[0], None)
-            hooks += tuple(self.vary(lib, callbacks, handle))
-            lib.call("TalusCaseSetProgress", handle, hooks[1], None)
+            hooks = [callbacks.progress(watch), self.push(lib, callbacks, handle), *self.vary(lib, callbacks, handle)]
+            lib.call("TalusCaseSetProgress", handle, hooks[0], None)
             code = lib.code("TalusRunCase", handle, str(out).encode(), flags, ctypes.byref(ended),
                             ctypes.byref(messages))
             if not code:
@@ -253,6 +251,12 @@ class Case:
         else:
             self.tell(lib, code, messages)
         return Run(out)
+
+    def push(self, lib, callbacks, handle):
+        """Hand `body_force` to a TalusCase; the hook, likewise."""
+        hook = callbacks.body_force(self.body_force)
+        lib.call("TalusCaseSetBodyForces", handle, hook, None)
+        return hook
 
     def vary(self, lib, callbacks, handle):
         """Hand the functions of `loads` to a TalusCase; the hooks, to be kept as long as it may ask them."""

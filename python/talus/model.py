@@ -127,23 +127,21 @@ class Model:
 
     def __init__(self, case):
         lib = library()
-        self._callbacks, self._hook = Callbacks(lib.header), None
+        self._callbacks = Callbacks(lib.header)
         self._handle, messages = ctypes.c_void_p(), ctypes.c_void_p()
         self._stack = contextlib.ExitStack()
         opened = self._stack.enter_context(case.opened())
         try:
+            self._body_force, self._hook = case.body_force, case.push(lib, self._callbacks, opened)
             self._loads, self._load_hooks = dict(case.loads), case.vary(lib, self._callbacks, opened)
             code = lib.code("TalusModelCreate", opened, ctypes.byref(self._handle), ctypes.byref(messages))
-            case.tell(lib, code, messages)
             self._callbacks.raise_kept()
+            case.tell(lib, code, messages)
         except BaseException:
             self.close()
             raise
         lib.watch(self)
         self.points, self.measures = Points(self), _Measures(self, case.measures_of(opened))
-        self._body_force = None
-        if case.body_force:
-            self.body_force = case.body_force
 
     def close(self):
         """Give the model back; its views mean nothing any more. Not from a function that its step asks. Collective."""

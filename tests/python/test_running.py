@@ -264,6 +264,23 @@ class Running(InFolder):
                 model.body_force = lambda X, x, t, answer=answer: answer
                 self.assertTrue(model.step(1e-3))
 
+    def test_equilibrium_begins_with_the_body_force(self):
+        """A column that begins in equilibrium under a force stays where it is, as under gravity."""
+        tops = []
+        for gravity, force in ([0, -9.81], None), ([0, 0], lambda X, x, t: [0, -9.81]):
+            case = block(**{"loads.gravity": gravity, "initial.equilibrium": "direct"})
+            case.body_force = force
+            with case.model() as model:
+                self.assertIs(model.body_force, force)
+                tops.append([model.measures["top"]])
+                for _ in range(3):
+                    model.step()
+                    tops[-1].append(model.measures["top"])
+            tops.append(case.run("equilibrium", force=True).history["top"][:4])
+        self.assertLess(np.ptp(tops[0]), 0.05 * abs(tops[0][0]))
+        for top in tops[1:]:
+            np.testing.assert_allclose(top, tops[0], rtol=1e-6)
+
     def test_a_model_ends_as_its_run(self):
         """With a condition of `until`; whoever asks for a step of a given length goes on."""
         case = block(**{"analysis.end": 0.1, "analysis.until": [{"measure": "top", "below": -1e-4}]})
