@@ -71,9 +71,15 @@ class Case:
                 self.file = self.file / "case.yaml"
             self.folder = self.file.parent
 
+    def _changed(self, parts):
+        """Paths of the changes at a key and below it."""
+        return [path for path in self.changes if _parts(path)[:len(parts)] == parts]
+
     def __setitem__(self, path, value):
         parts = _parts(path)
         if self.document is None:
+            for old in self._changed(parts):
+                del self.changes[old]  # what is set last holds, and stands last
             self.changes[path] = _yaml.plain(value)
             return
         at = self.document
@@ -88,7 +94,7 @@ class Case:
     def __getitem__(self, path):
         """The value of a key: what was set, what the dict holds, or what the file comes to, defaults too."""
         parts = _parts(path)
-        if path in self.changes:
+        if self._changed(parts) == [path]:
             return self.changes[path]
         return _walk(self.resolved() if self.document is None else self.document, path, parts)
 

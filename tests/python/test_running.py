@@ -122,6 +122,21 @@ class Cases(InFolder):
         with self.assertRaisesRegex(ValueError, "cannot hold nan"):
             block(**{"analysis.end": np.nan}).check()
 
+    def test_what_is_set_last_holds(self):
+        case = talus.Case(BLOCK)
+        case["materials.rubber.young"] = 2e6
+        case["materials.rubber"] = {"law": "neo-hookean", "density": 500, "young": 3e6, "poisson": 0.3}
+        self.assertEqual(case["materials.rubber.young"], 3e6)
+        case["materials.rubber.young"] = 4e6
+        case["loads.gravity[1]"] = -5
+        self.assertEqual(case["loads.gravity"], [0, -5])
+        case["loads.gravity"] = [0, -1]
+        self.assertEqual((case["loads.gravity[1]"], case["materials.rubber.density"]), (-1, 500))
+        case["loads.gravity[1]"] = -2
+        resolved = case.resolved()
+        self.assertEqual((resolved["materials"]["rubber"]["young"], resolved["loads"]["gravity"]), (4e6, [0, -2]))
+        self.assertEqual((case["materials.rubber"]["young"], case["loads.gravity"]), (4e6, [0, -2]))
+
     def test_keys_that_yaml_1_1_takes_for_truth(self):
         """PyYAML's safe_load has the key True for `on`."""
         case = block()
