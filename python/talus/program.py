@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -189,7 +190,14 @@ def sweep(case, over, measures=(), out=None, along=None, jobs=None, force=False)
 
 
 def _values(values):
-    return ",".join(_yaml.one_line(value).strip('"') for value in values)
+    return ",".join(_item(value) for value in values)
+
+
+def _item(value):
+    """A value among others: a text that is more than words, a number or a range (1:9:2) stands in quotes."""
+    if not isinstance(value, str):
+        return _yaml.one_line(value)
+    return value if re.fullmatch(r"[\w.:/+-]+( [\w.:/+-]+)*", value) else "'" + value.replace("'", "''") + "'"
 
 
 def calibrate(file, out=None, quick=False):

@@ -137,6 +137,12 @@ class Cases(InFolder):
         self.assertEqual((resolved["materials"]["rubber"]["young"], resolved["loads"]["gravity"]), (4e6, [0, -2]))
         self.assertEqual((case["materials.rubber"]["young"], case["loads.gravity"]), (4e6, [0, -2]))
 
+    def test_a_sweep_over_texts(self):
+        """A text with commas is one value."""
+        titles = ["soft, then hard", "it's \"one\"", "plain"]
+        swept = talus.sweep(talus.Case(BLOCK), {"title": titles}, measures=["top"], out="titles")
+        self.assertEqual([run["title"] for run in [run.case for run in swept.runs]], titles)
+
     def test_keys_that_yaml_1_1_takes_for_truth(self):
         """PyYAML's safe_load has the key True for `on`."""
         case = block()
