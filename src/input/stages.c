@@ -224,6 +224,18 @@ static PetscErrorCode LayOnEntry(const Layer *l, YamlNode *was, const YamlNode *
   PetscFunctionReturn(0);
 }
 
+/* What is said anew, but for its shape, has been drawn where it was. */
+static PetscErrorCode ReplaceEntry(const Layer *l, YamlNode *was, const YamlNode *entry)
+{
+  const YamlNode *list = was->parent, *drawn = yaml_find(was, "shape"), *shape = yaml_find(entry, "shape");
+  const PetscInt index = was->index, age = drawn && shape && yaml_equal(drawn, shape) ? drawn->stage : l->stage;
+
+  PetscFunctionBeginUser;
+  PetscCall(Replace(l, was, entry));
+  if (shape) set_stage(yaml_find(list->child[index], "shape"), age);
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode LayEntries(const Layer *l, YamlNode *list, const YamlNode *over)
 {
   const PetscBool by_keys = list->key && !strcmp(list->key, "bodies");
@@ -242,7 +254,7 @@ static PetscErrorCode LayEntries(const Layer *l, YamlNode *list, const YamlNode 
     else if (by_keys || says_presence_only(entry)) {
       if (by_keys && l->stage > 0 && !is_absent(was) && !is_absent(entry)) check_begun(l, was, entry);
       PetscCall(LayOnEntry(l, was, entry));
-    } else PetscCall(Replace(l, was, entry));
+    } else PetscCall(ReplaceEntry(l, was, entry));
   }
   PetscFunctionReturn(0);
 }

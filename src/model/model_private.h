@@ -223,8 +223,8 @@ PetscErrorCode BondsBegin(Model *model, const Case *from);
 /* Point p, at a distance `gap` (m) from its partner, is bonded if nothing presses it there (was) but it touches. */
 void contact_bond(const Model *model, PetscInt p, const PetscReal normal[3], PetscReal gap, const PetscReal *was,
                   PetscReal *kept);
-/* contact/rigid.c. What walls with mass cannot do; energies of theirs, J, the same on all ranks: of motion, and work of
- * weight and loads since the start. */
+/* contact/rigid.c. What walls with mass cannot do; energies of theirs, J, the same on all ranks: of motion (of those
+ * that are there; statics have none), and work of weight and loads since the start. */
 void rigid_check(const Model *model, Diag *diag);
 PetscReal rigid_motion(const Model *model);
 PetscReal rigid_work(const Model *model);
@@ -232,10 +232,6 @@ PetscReal rigid_work(const Model *model);
 PetscReal rigid_lost(const Model *model);
 /* Back to the step's start. */
 void rigid_back(Model *model);
-/* When a stage begins: those that were there before stand still. */
-void rigid_halt(Model *model, const Case *from);
-/* Before that: the energy of motion that the account of the case before has of them, J; statics have none. */
-PetscReal rigid_motion_before(const Model *model, const Case *from);
 /* Fastest of their centres, m/s. */
 PetscReal rigid_fastest(const Model *model);
 /* Collective. external += the forces of contact that material remembers, on owners: walls go on pressing as they did,

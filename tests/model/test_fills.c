@@ -59,7 +59,7 @@ static char *go_on(Bench *then, PetscBool next, Model **m)
     CALL(TablesCreate(&tables));
     CALL(ModelToTables(before, tables));
     *m = bench_model(then, PETSC_COMM_WORLD);
-    CALL(ModelTake(*m, tables, before->c, PETSC_FALSE, diag, &imbalance));
+    CALL(ModelTake(*m, tables, before->c, NULL, diag, &imbalance));
     CALL(TablesDestroy(&tables));
     CALL(ModelDestroy(&before));
   }

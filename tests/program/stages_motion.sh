@@ -75,6 +75,55 @@ done
 expect "and is reset" 0 "$talus" run falls.yaml --out falls --force --quiet --set 'stages[1]={name: reset, reset: [velocity], analysis: {type: dynamic, end: 0.001, step: 1e-3}}' --set 'loads={gravity: [0, 0]}'
 awk -F, '$3 == 2 { exit !($4 * $4 < 0.0025) }' falls/history.csv || fail "$name: $(grep ',2,' falls/history.csv)"
 
+# Walls with mass that a stage gives anew. One that was not there begins as the stage says; one that was there stays where
+# it is and goes on, but for what is said in other numbers; a reset stops it; drawn elsewhere it begins there; and energy
+# is accounted for, whatever its mass is now. Of a wall of 10 kg that flies with 1 m/s and 1 rad/s.
+cat >anew.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: dynamic, end: 1, step: 0.25}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.5}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 0.5]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.2}}
+boundary: [{on: {y: 0}, fix: [x, y]}]
+walls: [{name: w, shape: {circle: {centre: [0.5, 3], radius: 0.2}}, mass: {mass: 10, velocity: [1, 0], spin: 1}}]
+measures:
+  px: {wall_position: x, of: {wall: w}}
+  py: {wall_position: y, of: {wall: w}}
+  vx: {wall_velocity: x, of: {wall: w}}
+  vy: {wall_velocity: y, of: {wall: w}}
+  spin: {wall_spin: z, of: {wall: w}}
+  angle: {wall_angle: z, of: {wall: w}}
+  ek: {energy: kinetic}
+  balance: {energy: balance}
+stages:
+  - {name: flies}
+  - {name: anew, walls: [WALL]}
+END
+# What is said of the wall; its place, velocity, spin and angle, and kinetic energy, a second later; settings.
+anew() {
+  says=$1 values=$2
+  shift 2
+  sed "s|WALL|{name: w, $says}|" anew.yaml >anew_wall.yaml
+  for ranks in 1 2; do
+    expect "given anew: $says, $*, $ranks" 0 on_ranks $ranks "$talus" run anew_wall.yaml --out anew --force --quiet "$@"
+    awk -F, -v is="$values" 'END { n = split(is, v, " ")
+      for (i = 1; i <= n; ++i) if (($(i + 3) - v[i]) ^ 2 > 1e-24) exit 1
+      exit !(n == 7 && $11 ^ 2 < 1e-24) }' anew/history.csv || fail "$name: $(tail -n 1 anew/history.csv) for $values"
+  done
+}
+here='shape: {circle: {centre: [0.5, 3], radius: 0.2}}' moves='velocity: [1, 0], spin: 1'
+anew "$here, mass: {mass: 10, $moves}, friction: 0.2" "2.5 3 1 0 1 2 5.1"
+anew "$here, mass: {mass: 10, velocity: [0, -0.5], spin: 7}" "1.5 2.5 0 -0.5 7 8 6.15"
+anew "$here, mass: {mass: 10, velocity: [0, -0.5], spin: 7}" "0.5 2.5 0 -0.5 7 7 6.15" --set 'walls[0].absent=true'
+anew "$here, mass: {mass: 20, $moves}" "2.5 3 1 0 1 2 10.2"
+anew "$here, mass: {mass: 20, $moves, centre: [0.5, 3.1]}" "2.3618226709324 2.969883132106 0.94596976941319 -0.08414709848079 1 2 9.2193953882637"
+anew "shape: {circle: {centre: [0.5, 2], radius: 0.2}}, mass: {mass: 20, $moves}" "1.5 2 1 0 1 1 10.2"
+anew "absent: true" "1.5 3 1 0 1 1 0"
+stop='stages[1].reset=[velocity]'
+anew "$here, mass: {mass: 10, $moves}, friction: 0.2" "1.5 3 0 0 0 1 0" --set "$stop"
+anew "$here, mass: {mass: 10, velocity: [0, -0.5], spin: 1}" "1.5 2.5 0 -0.5 0 1 1.25" --set "$stop"
+
 # What falls has the way of gravity alone, to the last digits, in whatever stage that begins: one from rest, and one in which it grows.
 cat >drop.yaml <<'END'
 kinematics: plane-strain

@@ -37,7 +37,8 @@ typedef struct {
   PetscReal adhesion; /* N/m2: tangential stress beside friction */
   PetscBool has_mass; /* does it move by what acts on it? */
   WallMassSpec mass;
-  PetscInt since; /* stage whose words brought it: from and until count from its start */
+  PetscInt since; /* stage whose words brought it: from and until count from its start; */
+  PetscInt drawn; /* and the one whose words gave its shape: one with mass stands there as that begins */
   PetscBool absent;
 } WallSpec;
 

@@ -1,5 +1,4 @@
 /* Walls with mass in the accounts of a model. */
-#include <string.h>
 #include "model/model_private.h"
 
 static PetscInt count(const Model *m) { return m->contact ? m->contact->n_rigid : 0; }
@@ -34,7 +33,8 @@ void rigid_check(const Model *m, Diag *diag)
 PetscReal rigid_motion(const Model *m)
 {
   PetscReal sum = 0;
-  for (PetscInt k = 0; k < count(m); ++k) sum += m->scheme->inertia ? rigid_kinetic(m->contact->rigid + k) : 0;
+  for (PetscInt k = 0; k < count(m) && m->scheme->inertia; ++k)
+    if (!m->c->walls[m->contact->rigid[k].wall].absent) sum += rigid_kinetic(m->contact->rigid + k);
   return sum;
 }
 
@@ -55,21 +55,6 @@ PetscReal rigid_lost(const Model *m)
 void rigid_back(Model *m)
 {
   for (PetscInt k = 0; k < count(m); ++k) rigid_restore(m->contact->rigid + k, m->walls);
-}
-
-void rigid_halt(Model *m, const Case *from)
-{
-  for (PetscInt k = 0; k < count(m); ++k)
-    if (wall_stood(&m->c->walls[m->contact->rigid[k].wall], m->c, from)) rigid_stop(m->contact->rigid + k);
-}
-
-PetscReal rigid_motion_before(const Model *m, const Case *from)
-{
-  PetscReal sum = 0;
-  for (PetscInt k = 0; k < count(m) && !case_is_static(&from->analysis); ++k)
-    for (const WallSpec *w = from->walls; w < from->walls + from->n_walls; ++w)
-      if (!strcmp(w->name, m->c->walls[m->contact->rigid[k].wall].name)) sum += rigid_kinetic(m->contact->rigid + k);
-  return sum;
 }
 
 PetscReal rigid_fastest(const Model *m)

@@ -152,18 +152,20 @@ static PetscReal stored_before(const Tables *tables, PetscInt dim, char reason[2
   return sum;
 }
 
-/* What comes and goes with bodies, and with motion that ends, is none of the work of the run. before: of points, on
- * this rank; walls: of walls with mass. */
-static PetscErrorCode KeepAccount(Model *m, PetscReal before, PetscReal walls, PetscBool next)
+/* What comes and goes with bodies and walls, with motion that ends and mass that changes, is none of the work of the
+ * run; of walls that are gone for good their loads' work stays. stored_then: of points, on this rank. */
+static PetscErrorCode KeepAccount(Model *m, PetscReal stored_then, const Model *before)
 {
-  PetscReal local[2] = {before, stored(m)}, sum[2];
+  PetscReal local[2] = {stored_then, stored(m)}, sum[2];
 
   PetscFunctionBeginUser;
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
   sum[1] += rigid_motion(m);
-  if (next) m->start_energy += sum[1] - sum[0] - walls;
-  else m->start_energy = sum[1], m->open_energy = 0;
-  m->most_energy = PetscMax(next ? m->most_energy : 0, m->start_energy + m->external_work + m->boundary_work);
+  if (before) {
+    m->start_energy += sum[1] - sum[0] - rigid_motion(before);
+    m->external_work += rigid_work(before) - rigid_work(m);
+  } else m->start_energy = sum[1], m->open_energy = 0;
+  m->most_energy = PetscMax(before ? m->most_energy : 0, m->start_energy + m->external_work + m->boundary_work);
   PetscFunctionReturn(0);
 }
 
@@ -176,13 +178,13 @@ static PetscBool meets_who_comes(const Case *c, const Case *from, const Interfac
 }
 
 /* All that the tables give; reason where they make no sense. */
-static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool next, PetscBool onto, Diag *diag,
+static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, const Model *before, PetscBool onto, Diag *diag,
                            char reason[256])
 {
-  const PetscReal before = stored_before(tables, m->dim, reason);
+  const PetscReal stored_then = stored_before(tables, m->dim, reason);
   const PetscInt errors = diag_errors(diag);
+  const PetscBool next = (PetscBool)(before != NULL);
   PetscBool home = PETSC_TRUE; /* a cloud on other ranks is cut anew */
-  PetscReal walls;
 
   PetscFunctionBeginUser;
   PetscCall(ReasonShare(m->comm, reason));
@@ -197,14 +199,14 @@ static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, PetscBool
   if (!next && !onto && m->method->restores_grid && !m->method->clouds) PetscCall(TakeReactions(m, tables));
   PetscCall(ReasonShare(m->comm, reason));
   if (reason[0] || diag_errors(diag) > errors) PetscFunctionReturn(0);
+  if (next) walls_go_on(m, before);
   if (m->method->restores_grid || m->grid->n_fields > 1) PetscCall(BodiesStand(m, from, diag));
   for (int pass = 0; next && pass < 2; ++pass) /* what reaches over at one has another surface at the next one */
     for (PetscInt k = 0; k < m->c->n_interfaces; ++k)
       if (meets_who_comes(m->c, from, m->c->interfaces + k)) PetscCall(InterfaceCloses(m, k));
   if (next) PetscCall(BondsBegin(m, from));
-  walls = rigid_motion_before(m, from);
   PetscCall(ResetMotion(m, from, next));
-  PetscCall(KeepAccount(m, before, walls, next));
+  PetscCall(KeepAccount(m, stored_then, before));
   PetscFunctionReturn(0);
 }
 
@@ -248,18 +250,20 @@ static PetscBool moves_linearly(const Case *from)
                      (from->analysis.type == ANALYSIS_EXPLICIT || !lumps));
 }
 
-PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, PetscBool next, Diag *diag, Imbalance *imbalance)
+PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, const Model *before, Diag *diag,
+                         Imbalance *imbalance)
 {
+  const PetscBool next = (PetscBool)(before != NULL);
+  const PetscInt mistakes = diag_errors(diag);
   char reason[256] = "", other[256] = "";
   PetscInt errors;
 
   PetscFunctionBeginUser;
-  const PetscInt before = diag_errors(diag);
   PetscCall(CheckCases(m, from, next, diag));
-  if (m->method->clouds && diag_errors(diag) == before) PetscCall(CheckCloud(m, tables, diag, reason));
+  if (m->method->clouds && diag_errors(diag) == mistakes) PetscCall(CheckCloud(m, tables, diag, reason));
   state_check_grid(m, tables, other);
-  const PetscBool onto = other[0] && diag_errors(diag) == before && takes_another_grid(m, next, diag);
-  if (diag_errors(diag) == before) PetscCall(Take(m, tables, from, next, onto, diag, reason));
+  const PetscBool onto = other[0] && diag_errors(diag) == mistakes && takes_another_grid(m, next, diag);
+  if (diag_errors(diag) == mistakes) PetscCall(Take(m, tables, from, before, onto, diag, reason));
   if (reason[0]) diag_error(diag, next ? NULL : "initial.run", "the state cannot be taken over: %s", reason);
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
@@ -307,7 +311,7 @@ PetscErrorCode ModelSucceed(const Case *stage, Diag *diag, Model **model, Imbala
   if (m) strength_go_on(m, before, diag);
   if (m && goes_on) PetscCall(JumpExpect(m));
   if (m) raised_go_on(m, before);
-  if (m) PetscCall(ModelTake(m, tables, before->c, PETSC_TRUE, diag, imbalance));
+  if (m) PetscCall(ModelTake(m, tables, before->c, before, diag, imbalance));
   PetscCall(TablesDestroy(&tables));
   PetscCall(DiagReduce(before->comm, diag, &errors));
   if (errors && m) PetscCall(ModelDestroy(&m));

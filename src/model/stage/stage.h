@@ -19,10 +19,10 @@ PetscErrorCode RenameCheck(const Case *c, const Case *from, PetscBool next, Diag
 /* Loads of stage c that the material carries, and of which the stage before it knows nothing, wait in that: it gets
  * them as further loads that do not act. From the last stage to the first. */
 PetscErrorCode LoadsWait(const Case *c, Case *before);
-/* Collective. Take the state of `from`, as tables, into a model that was just created. next: it goes on in
- * time, with its account of energies, measures and carried loads; else everything begins now. What
+/* Collective. Take the state of `from`, as tables, into a model that was just created. before: the model of that state,
+ * which goes on in time, with its account of energies, measures and carried loads; NULL: everything begins now. What
  * does not fit goes to diag. */
-PetscErrorCode ModelTake(Model *model, Tables *tables, const Case *from, PetscBool next, Diag *diag,
+PetscErrorCode ModelTake(Model *model, Tables *tables, const Case *from, const Model *before, Diag *diag,
                          Imbalance *imbalance);
 /* Collective. ModelTake of a run's tables, which it may replace. Accelerations that go on jump with what acts, from
  * the end of that run to the start of this one, where its model can be made again. */

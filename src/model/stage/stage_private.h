@@ -58,6 +58,8 @@ PetscBool stands_still(const Model *model);
 PetscErrorCode ResetMotion(Model *model, const Case *from, PetscBool next);
 /* Collective. Accelerations of the balance where nothing moves; those that go on jump with what acts. */
 PetscErrorCode BeginAcceleration(Model *model, const Case *from, const Tables *tables);
+/* motion/walls.c. Walls with mass go on from where they were in the stage before, or begin. */
+void walls_go_on(Model *model, const Model *before);
 /* motion/jump.c. Do accelerations go on from the stage before, and jump with what acts? */
 PetscBool accelerations_go_on(const Case *c, const Case *from);
 /* Collective. Before its tables are made: what balances the last state of the stage before goes to them, or with the

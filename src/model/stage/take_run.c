@@ -51,7 +51,7 @@ PetscErrorCode ModelTakeRun(Model *m, Tables **tables, const Case *from, Diag *d
     PetscCall(JumpFrom(before, *tables));
     PetscCall(ModelToTables(before, *tables)); /* some stand over its arrays */
   }
-  PetscCall(ModelTake(m, *tables, from, PETSC_FALSE, diag, imbalance));
+  PetscCall(ModelTake(m, *tables, from, NULL, diag, imbalance));
   if (before) PetscCall(ModelDestroy(&before));
   PetscFunctionReturn(0);
 }

@@ -300,6 +300,48 @@ void rigid_end(RigidWall *b)
   go(b);
 }
 
+/* --- when a stage begins --- */
+void rigid_move(RigidWall *b, const PetscReal v[3], const PetscReal omega[3])
+{
+  for (int d = 0; d < 3; ++d) b->now.v[d] = b->free[d] ? v[d] : 0;
+  moment_of(b, b->now.R, omega, b->now.L);
+  b->start = b->now;
+}
+
+/* Where it is drawn. */
+static void put(RigidWall *b)
+{
+  b->now = (RigidState){.work = b->now.work};
+  for (int d = 0; d < 3; ++d) b->now.R[4 * d] = 1;
+}
+
+void rigid_start(RigidWall *b, const Case *c)
+{
+  put(b);
+  rigid_move(b, c->walls[b->wall].mass.velocity, c->walls[b->wall].mass.spin);
+}
+
+void rigid_redraw(RigidWall *b, const RigidWall *was)
+{
+  PetscReal omega[3];
+  rigid_spin(was, omega);
+  put(b);
+  rigid_move(b, was->now.v, omega);
+}
+
+/* Its centre of mass may be another one of its matter. */
+void rigid_go_on(RigidWall *b, const RigidWall *was)
+{
+  PetscReal arm[3], v[3], omega[3];
+  for (int d = 0; d < 3; ++d) arm[d] = b->body.centre[d] - was->body.centre[d];
+  turn(was->now.R, arm, arm);
+  rigid_velocity(was, arm, v);
+  rigid_spin(was, omega);
+  b->now = was->now;
+  for (int d = 0; d < 3; ++d) b->now.moved[d] += was->body.centre[d] + arm[d] - b->body.centre[d];
+  rigid_move(b, v, omega);
+}
+
 void rigid_stop(RigidWall *b)
 {
   for (int d = 0; d < 3; ++d) b->now.v[d] = b->now.L[d] = 0;
@@ -365,7 +407,7 @@ void rigid_go(RigidWall *b, Walls *walls)
 }
 
 /* --- making --- */
-static void start(RigidWall *b, const Case *c, Walls *walls, Diag *diag)
+static void make(RigidWall *b, const Case *c, Walls *walls, Diag *diag)
 {
   const WallMassSpec *m = &c->walls[b->wall].mass;
   const PetscBool space = c->kinematics->dim == 3;
@@ -373,11 +415,8 @@ static void start(RigidWall *b, const Case *c, Walls *walls, Diag *diag)
   for (int d = 0; d < 3; ++d) {
     b->free[d] = m->free[d];
     b->free[3 + d] = m->free[3] && (space || d == 2);
-    b->now.v[d] = m->velocity[d];
-    b->now.R[4 * d] = 1;
   }
-  moment_of(b, b->now.R, m->spin, b->now.L);
-  b->start = b->now;
+  rigid_start(b, c);
 }
 
 PetscErrorCode RigidCreate(const Case *c, Walls *walls, Diag *diag, PetscInt *n, RigidWall **rigid)
@@ -390,7 +429,7 @@ PetscErrorCode RigidCreate(const Case *c, Walls *walls, Diag *diag, PetscInt *n,
   for (PetscInt k = 0; k < c->n_walls; ++k) {
     if (!c->walls[k].has_mass) continue;
     (*rigid)[*n].wall = k;
-    start(*rigid + (*n)++, c, walls, diag);
+    make(*rigid + (*n)++, c, walls, diag);
   }
   PetscFunctionReturn(0);
 }

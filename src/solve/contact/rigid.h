@@ -93,7 +93,14 @@ PetscReal rigid_softness(const RigidWall *b, PetscReal lever);
 void rigid_kick(RigidWall *b, const Case *c, PetscReal t, PetscReal kick);
 void rigid_drift(RigidWall *b, PetscReal dt);
 void rigid_go(RigidWall *b, Walls *walls);
-/* It stands still, where it is. */
+/* When a stage begins: it is where it is drawn, with the motion that it is told, or with the velocity and spin that it
+ * had (was); or it goes on with these from where the stage before has left it. Whatever its mass is now, and what loads
+ * have worked stays in the account. */
+void rigid_start(RigidWall *b, const Case *c);
+void rigid_redraw(RigidWall *b, const RigidWall *was);
+void rigid_go_on(RigidWall *b, const RigidWall *was);
+/* After that: it moves so, as far as it may; and stands still. */
+void rigid_move(RigidWall *b, const PetscReal v[3], const PetscReal omega[3]);
 void rigid_stop(RigidWall *b);
 /* As the step began. */
 void rigid_restore(RigidWall *b, Walls *walls);

@@ -23,7 +23,6 @@ PetscErrorCode ResetMotion(Model *m, const Case *from, PetscBool next)
   if (anew) PetscCall(PetscArrayzero(m->tracers->real[POINT_U], m->tracers->n * m->dim));
   if (stands && !m->method->restores_grid) PetscCall(PetscArrayzero(n->v, dofs));
   if (stands) PetscCall(PetscArrayzero(m->points->real[POINT_V], numbers));
-  if (stands) rigid_halt(m, from);
   if (!begins_anew(m, from)) PetscFunctionReturn(0);
   if (m->points->components[POINT_SLOPE])
     PetscCall(PetscArrayzero(m->points->real[POINT_SLOPE], m->points->n * m->points->components[POINT_SLOPE]));
