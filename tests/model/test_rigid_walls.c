@@ -282,6 +282,68 @@ static void test_floats(void **state)
   floats(0.55);
 }
 
+/* Smooth and round, or a plate in space: nothing resists that they turn, or that the plate goes along the block, so they
+ * do not. Their angles were round-off over round-off, and the plate was thrown out of the grid. Pushed along the block,
+ * or turned, they have no equilibrium, and the report says which way. */
+typedef struct {
+  Hit hit;
+  PetscBool plate;
+  const char *pushed; /* along x, or turned about the last axis */
+} Smooth;
+
+static void rests(const Smooth *way)
+{
+  const int up = way->hit.cell == CELL_HEXAHEDRON ? 2 : 1;
+  Bench b;
+  WallSpec wall;
+  StepReport report = {0};
+  below_ball(&b, &way->hit, PETSC_FALSE, &wall);
+  wall.shape.centre[up] = 0.795;
+  if (way->plate) wall.shape = (Shape){.kind = SHAPE_BOX, .min = {0.4, -0.1, 0.5}, .max = {1.6, 0.6, 0.7}};
+  for (int d = 0; d < 3; ++d) wall.mass.velocity[d] = wall.mass.spin[d] = 0;
+  wall.mass.force[up] = -100;
+  if (way->pushed && way->plate) wall.mass.force[0] = 10;
+  else if (way->pushed) wall.mass.torque[2] = 10;
+  b.c.newton.residual = 1e-8;
+  bench_motion(&b, up, 0, MOTION_FIXED, 7);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  while (!way->pushed && m->time < 1 - 1e-9) model_step(m, 0.5);
+  if (way->pushed) CALL(ModelStep(m, 0.5, &report));
+  const RigidState *now = &m->contact->rigid->now;
+  PetscPrintf(PETSC_COMM_WORLD, "%s %d smooth: moved %.2g %.2g %.2g, turned %.2g %.2g %.2g, %d cuts. %s\n",
+              way->hit.method, (int)way->plate, (double)now->moved[0], (double)now->moved[1], (double)now->moved[2],
+              (double)now->turned[0], (double)now->turned[1], (double)now->turned[2], (int)m->cuts,
+              report.newton.reason ? report.newton.reason : "");
+  if (way->pushed) {
+    CHECK(report.outcome != STEP_ACCEPTED, "something holds it");
+    CHECK(strstr(report.newton.reason, way->pushed), "%s", report.newton.reason);
+  } else {
+    CHECK_CLOSE(of_ball(m, "wall_force", up), -100, 1e-6);
+    CHECK(m->cuts == 0, "%d steps were halved", (int)m->cuts);
+    for (int d = 0; d < 3; ++d) CHECK_CLOSE(now->turned[d], 0, way->plate && d < 2 ? 1e-3 : 1e-9);
+  }
+  CALL(ModelDestroy(&m));
+}
+
+static void test_rests(void **state)
+{
+  static const Smooth ways[] = {
+    {{"fem", "cell", NULL, CELL_QUADRILATERAL, 0, PETSC_FALSE, 0, 0}, PETSC_FALSE, NULL},
+
+    {{"mpm", "gimp", NULL, CELL_QUADRILATERAL, 0, PETSC_FALSE, 0.125, 0}, PETSC_FALSE, NULL},
+    {{"fem", "cell", NULL, CELL_HEXAHEDRON, 0, PETSC_FALSE, 0.125, 0}, PETSC_FALSE, NULL},
+    {{"fem", "cell", NULL, CELL_HEXAHEDRON, 0, PETSC_FALSE, 0.25, 0}, PETSC_TRUE, NULL},
+    {{"fem", "cell", NULL, CELL_QUADRILATERAL, 0, PETSC_FALSE, 0, 0},
+     PETSC_FALSE,
+     "a torque about z acts on the wall with mass 'ball'"},
+    {{"fem", "cell", NULL, CELL_HEXAHEDRON, 0, PETSC_FALSE, 0.25, 0},
+     PETSC_TRUE,
+     "a force along x acts on the wall with mass 'ball'"},
+  };
+  (void)state;
+  EACH_OF (k, ways) rests(&ways[k]);
+}
+
 /* A bar that is bonded to a wall which can turn about its middle falls as a pendulum, by Newmark's rule: what the wall
  * gains is the torque that it is told to have given, and the angle that of the ordinary differential equation. The
  * wall had its torques from where forces ended and the bar from half-way: 29 % less, and 1.7 % of the angle. */
@@ -356,6 +418,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_hits),    cmocka_unit_test(test_several),    cmocka_unit_test(test_flies),
     cmocka_unit_test(test_turns),   cmocka_unit_test(test_stands),     cmocka_unit_test(test_floats),
     cmocka_unit_test(test_endless), cmocka_unit_test(test_centreless), cmocka_unit_test(test_carries),
+    cmocka_unit_test(test_rests),
   };
   return run_model_tests_in_turns(argc, argv, tests);
 }

@@ -29,11 +29,9 @@ static inline PetscBool svd_rotate(PetscInt n, PetscInt p, PetscInt q, PetscReal
   return PETSC_TRUE;
 }
 
-/* The shortest x that solves A x = b (n x n, row by row, n <= SVD_MOST; A is lost) as well as can be:
- * what singular values below `tolerance` of the largest would bring is left out. */
-static inline void svd_solve(PetscInt n, PetscReal tolerance, PetscReal *A, const PetscReal *b, PetscReal *x)
+/* A becomes A V, whose columns are orthogonal: their lengths are the singular values, in no order. */
+static inline void svd_turn(PetscInt n, PetscReal *A, PetscReal *V)
 {
-  PetscReal V[SVD_MOST * SVD_MOST], size2[SVD_MOST], largest = 0;
   PetscBool turned = PETSC_TRUE;
   for (PetscInt k = 0; k < n * n; ++k) V[k] = k % (n + 1) == 0;
   for (int sweep = 0; sweep < SVD_SWEEPS && turned; ++sweep) {
@@ -41,6 +39,14 @@ static inline void svd_solve(PetscInt n, PetscReal tolerance, PetscReal *A, cons
     for (PetscInt p = 0; p < n; ++p)
       for (PetscInt q = p + 1; q < n; ++q) turned |= svd_rotate(n, p, q, A, V);
   }
+}
+
+/* The shortest x that solves A x = b (n x n, row by row, n <= SVD_MOST; A is lost) as well as can be:
+ * what singular values below `tolerance` of the largest would bring is left out. */
+static inline void svd_solve(PetscInt n, PetscReal tolerance, PetscReal *A, const PetscReal *b, PetscReal *x)
+{
+  PetscReal V[SVD_MOST * SVD_MOST], size2[SVD_MOST], largest = 0;
+  svd_turn(n, A, V);
   for (PetscInt j = 0; j < n; ++j) {
     x[j] = size2[j] = 0;
     for (PetscInt i = 0; i < n; ++i) size2[j] += A[i * n + j] * A[i * n + j];

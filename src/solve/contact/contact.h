@@ -269,6 +269,9 @@ PetscErrorCode RigidSums(Contact *contact, const NodalScene *scene);
  * derivatives of the nodes' residual by them, B, and of theirs by du, C (n x n_nodes x dim each, zero on entry); D:
  * of theirs by themselves, n x n, of all ranks. Those that a wall does not have are 1 on the diagonal. */
 PetscErrorCode RigidTangent(Contact *contact, const NodalScene *scene, PetscReal *B, PetscReal *C, PetscReal *D);
+/* In statics that holds motions which nothing resists where they are: along which unknown of the wall does most act of
+ * such? -1: nothing does. */
+int rigid_adrift(const RigidWall *wall);
 /* The law at the present increments; K: minus its derivative by the motion of the contact point, or NULL.
  * PETSC_FALSE where there is no contact. */
 PetscBool contact_meets(const Contact *contact, ContactPoint *c, const NodalScene *scene, PetscReal *K);

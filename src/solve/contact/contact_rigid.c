@@ -1,8 +1,11 @@
 /* Contact as walls with mass feel it: forces and torques, and the borders of the tangent. */
 #include "solve/contact/contact.h"
+#include "base/math/svd.h"
 #include "base/math/vector.h"
 
-#define SUMS (RIGID + 3)
+#define SUMS (RIGID + 4)
+#define DIGITS 100   /* round-off of a tangent whose parts cancel */
+#define NOTHING 1e-6 /* share of all loads: what acts no more than that is round-off, too */
 
 static void cross_axis(int axis, const PetscReal r[3], PetscReal c[3])
 {
@@ -34,6 +37,7 @@ PetscErrorCode RigidSums(Contact *s, const NodalScene *scene)
     contact_place(s, c, scene->du, scene->whole, x);
     rigid_lever(b, c->x, x, lever);
     own[RIGID + 2] += c->law.penalty;
+    own[RIGID + 3] += c->law.penalty * vector_dot(lever, lever);
     for (int i = 0; i < RIGID; ++i) {
       motion_of(i, lever, motion);
       const PetscReal along = vector_dot(motion, f);
@@ -50,6 +54,7 @@ PetscErrorCode RigidSums(Contact *s, const NodalScene *scene)
     for (int i = 0; i < RIGID; ++i) b->contact[i] = sum[SUMS * k + i];
     for (int i = 0; i < 2; ++i) b->size[i] = sum[SUMS * k + RIGID + i];
     b->stiff = sum[SUMS * k + RIGID + 2];
+    b->twist = sum[SUMS * k + RIGID + 3];
   }
   PetscCall(PetscFree(sum));
   PetscFunctionReturn(0);
@@ -118,6 +123,62 @@ static void add_rows(const Contact *s, const RigidWall *b, const Touch *t, Petsc
     }
 }
 
+/* What makes a length of a rotation: the usual lever of what is near, m. */
+static PetscReal lever_of(const RigidWall *b, int i)
+{
+  return i > 2 && b->stiff > 0 && b->twist > 0 ? PetscSqrtReal(b->twist / b->stiff) : 1;
+}
+
+/* By how many digits levers are wrong where the origin is far away. */
+static PetscReal digits_of(const RigidWall *b)
+{
+  PetscReal centre[3];
+  for (int d = 0; d < 3; ++d) centre[d] = b->body.centre[d] + b->now.moved[d];
+  return DIGITS * PETSC_MACHINE_EPSILON * (1 + PetscSqrtReal(vector_dot(centre, centre)) / lever_of(b, 3));
+}
+
+/* v, of unit length where rotations are lengths, is held, and what acts along it told. */
+static void hold_motion(RigidWall *b, const PetscReal v[RIGID], PetscInt n, PetscReal *D)
+{
+  PetscReal r[RIGID], along = 0;
+  rigid_residual(b, r);
+  for (int i = 0; i < RIGID; ++i) along += v[i] * r[i] / lever_of(b, i);
+  for (int i = 0; i < RIGID; ++i) {
+    b->adrift[i] -= along * v[i] * lever_of(b, i);
+    for (int j = 0; j < RIGID; ++j) D[i * n + j] += b->stiff * v[i] * lever_of(b, i) * v[j] * lever_of(b, j);
+  }
+}
+
+/* In statics: motions against which the tangent by contact, D (6 x 6, rows of n numbers), has no more than digits are
+ * held where they are, as if what is near pushed them back. */
+static void hold(RigidWall *b, PetscInt n, PetscReal *D)
+{
+  PetscReal A[RIGID * RIGID], V[RIGID * RIGID], v[RIGID];
+  for (int i = 0; i < RIGID; ++i) {
+    b->adrift[i] = 0;
+    for (int j = 0; j < RIGID; ++j)
+      A[RIGID * i + j] = rigid_has(b, i) && rigid_has(b, j) ? D[i * n + j] / (lever_of(b, i) * lever_of(b, j)) : 0;
+  }
+  svd_turn(RIGID, A, V);
+  for (int j = 0; j < RIGID && b->dt == 0; ++j) {
+    PetscReal square = 0;
+    for (int i = 0; i < RIGID; ++i) square += PetscSqr(A[RIGID * i + j]), v[i] = V[RIGID * i + j];
+    if (rigid_has(b, j) && square <= PetscSqr(digits_of(b) * b->stiff)) hold_motion(b, v, n, D);
+  }
+}
+
+int rigid_adrift(const RigidWall *b)
+{
+  PetscReal acts = 0;
+  int most = -1;
+  for (int i = 0; i < RIGID; ++i) acts += PetscAbsReal(b->load[1][i]) / lever_of(b, i);
+  for (int i = 0; i < RIGID && b->dt == 0 && acts > 0; ++i) {
+    const PetscReal so = PetscAbsReal(b->adrift[i]) / lever_of(b, i);
+    if (so > NOTHING * acts && (most < 0 || so > PetscAbsReal(b->adrift[most]) / lever_of(b, most))) most = i;
+  }
+  return most;
+}
+
 PetscErrorCode RigidTangent(Contact *s, const NodalScene *scene, PetscReal *B, PetscReal *C, PetscReal *D)
 {
   const PetscInt n = RIGID * s->n_rigid, dofs = scene->grid->n_nodes * s->dim;
@@ -133,8 +194,9 @@ PetscErrorCode RigidTangent(Contact *s, const NodalScene *scene, PetscReal *B, P
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, D, (PetscMPIInt)(n * n), MPIU_REAL, MPI_SUM, scene->grid->comm));
   for (PetscInt k = 0; k < s->n_rigid; ++k) {
-    const RigidWall *b = s->rigid + k;
+    RigidWall *b = s->rigid + k;
     PetscReal own[RIGID * RIGID];
+    hold(b, n, D + RIGID * k * (n + 1));
     rigid_inertia(b, own);
     for (int i = 0; i < RIGID; ++i)
       for (int j = 0; j < RIGID; ++j) {

@@ -36,10 +36,11 @@ typedef struct {
   PetscReal load[2][RIGID]; /* weight, force and torque at the step's start and end */
   PetscReal q[RIGID];       /* increments: translation d, and theta of exp(theta), m, rad */
   /* of contact on the material at the last assembly, over all ranks: forces and torques, and the sums of their
-   * sizes; penalties of what is near, N/m */
-  PetscReal contact[RIGID], size[2], stiff;
-  PetscReal given[3]; /* momentum that contact took from it in this step, kg m/s */
-  PetscReal lost;     /* energy of motion that impulses took, J */
+   * sizes; penalties of what is near, N/m, and times the squares of their levers, N m */
+  PetscReal contact[RIGID], size[2], stiff, twist;
+  PetscReal adrift[RIGID]; /* statics: what acted along motions that nothing resisted at the last tangent, N, N m */
+  PetscReal given[3];      /* momentum that contact took from it in this step, kg m/s */
+  PetscReal lost;          /* energy of motion that impulses took, J */
 } RigidWall;
 
 /* The rigid wall of a wall of the case, or NULL. */

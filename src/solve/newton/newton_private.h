@@ -121,7 +121,8 @@ void newton_rigid_set(const Newton *n, const PetscReal *q);
 /* Work that their residual still does along the direction, with the sign of that of the nodes; context: the Newton. */
 PetscReal newton_rigid_work(void *context);
 PetscBool newton_rigid_met(const Newton *n);
-/* Why no solution was found, if it is that a wall with mass touches nothing in statics; else NULL. */
+/* Why no solution was found, if it is that a wall with mass touches nothing in statics, or that something acts on it
+ * where nothing resists; else NULL. */
 const char *newton_rigid_reason(Newton *n);
 
 /* newton_loose.c. The same, if it is that nothing resists at some nodes in statics. Collective. */

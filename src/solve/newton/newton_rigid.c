@@ -75,7 +75,7 @@ static PetscErrorCode Condense(Newton *n, Border *b, Vec y)
   PetscFunctionReturn(0);
 }
 
-/* Gauss with pivots: r := D^-1 r. What nothing holds stays where it is. */
+/* Gauss with pivots: r := D^-1 r. What nothing holds, and nothing is near to, stays where it is. */
 static void solve_dense(PetscInt n, PetscReal *D, PetscReal *r)
 {
   for (PetscInt k = 0; k < n; ++k) {
@@ -100,15 +100,6 @@ static void solve_dense(PetscInt n, PetscReal *D, PetscReal *r)
   }
 }
 
-/* In statics a wall that has just lost its contact is led back by the penalty of what is near. */
-static void hold_loose(const Contact *s, Border *b)
-{
-  for (PetscInt i = 0; i < b->n; ++i) {
-    const RigidWall *wall = s->rigid + i / RIGID;
-    if (wall->dt == 0 && rigid_has(wall, (int)(i % RIGID)) && b->D[i * b->n + i] == 0) b->D[i * b->n + i] = wall->stiff;
-  }
-}
-
 PetscErrorCode NewtonRigidBegin(Newton *n, Vec y)
 {
   StepProblem *p = n->problem;
@@ -122,7 +113,6 @@ PetscErrorCode NewtonRigidBegin(Newton *n, Vec y)
   PetscCall(VecDuplicate(n->x, &b.c));
   for (PetscInt k = 0; k < s->n_rigid; ++k) rigid_residual(s->rigid + k, b.r + RIGID * k);
   PetscCall(RigidTangent(s, &p->scene, b.B, b.C, b.D));
-  hold_loose(s, &b);
   PetscCall(Condense(n, &b, y));
   solve_dense(all, b.D, b.r);
   PetscCall(PetscRealloc((size_t)(2 * all) * sizeof *n->rigid, &n->rigid));
@@ -193,16 +183,28 @@ static PetscBool is_loose(const Contact *s, const RigidWall *wall)
   return (PetscBool)(rigid_floats(wall) && (wall->stiff == 0 || !held));
 }
 
+static void tell_loose(const RigidWall *wall, const char *name, size_t room, char *text)
+{
+  snprintf(text, room, "the wall with mass '%s' touches nothing%s, and in statics nothing else holds it", name,
+           wall->stiff > 0 ? " where the iteration ended, near as it is to a body" : "");
+}
+
+static void tell_adrift(int i, const char *name, size_t room, char *text)
+{
+  snprintf(text, room, "a %s %c acts on the wall with mass '%s', and in statics nothing resists it",
+           i < 3 ? "force along" : "torque about", "xyz"[i % 3], name);
+}
+
 const char *newton_rigid_reason(Newton *n)
 {
   const Contact *s = n->problem->scene.contact;
   for (PetscInt k = 0; s && k < s->n_rigid; ++k) {
     const RigidWall *wall = s->rigid + k;
-    if (!is_loose(s, wall)) continue;
-    snprintf(n->loose, sizeof n->loose,
-             "the wall with mass '%s' touches nothing%s, and in statics nothing else holds it",
-             n->problem->scene.c->walls[wall->wall].name,
-             wall->stiff > 0 ? " where the iteration ended, near as it is to a body" : "");
+    const char *name = n->problem->scene.c->walls[wall->wall].name;
+    const int adrift = rigid_floats(wall) ? -1 : rigid_adrift(wall);
+    if (is_loose(s, wall)) tell_loose(wall, name, sizeof n->loose, n->loose);
+    else if (adrift >= 0) tell_adrift(adrift, name, sizeof n->loose, n->loose);
+    else continue;
     return n->loose;
   }
   return NULL;
