@@ -123,6 +123,10 @@ anew "absent: true" "1.5 3 1 0 1 1 0"
 stop='stages[1].reset=[velocity]'
 anew "$here, mass: {mass: 10, $moves}, friction: 0.2" "1.5 3 0 0 0 1 0" --set "$stop"
 anew "$here, mass: {mass: 10, velocity: [0, -0.5], spin: 1}" "1.5 2.5 0 -0.5 0 1 1.25" --set "$stop"
+# And one that is gone for good, which a force has pushed by 1.25 m: its work stays, its motion goes.
+sed -e '/: {wall_/d' -e 's/^measures:/&\n  came: {energy: external}/' -e 's/spin: 1}/spin: 1, force: [5, 0]}/' -e 's/\[WALL\]/[]/' anew.yaml >anew_wall.yaml
+expect "gone for good" 0 "$talus" run anew_wall.yaml --out anew --force --quiet
+awk -F, 'END { exit !(($4 - 6.25) ^ 2 < 1e-20 && $5 == 0 && $6 ^ 2 < 1e-24) }' anew/history.csv || fail "$name: $(tail -n 1 anew/history.csv)"
 
 # What falls has the way of gravity alone, to the last digits, in whatever stage that begins: one from rest, and one in which it grows.
 cat >drop.yaml <<'END'
