@@ -282,9 +282,9 @@ static void test_floats(void **state)
   floats(0.55);
 }
 
-/* Smooth and round, or a plate in space: nothing resists that they turn, or that the plate goes along the block, so they
- * do not. Their angles were round-off over round-off, and the plate was thrown out of the grid. Pushed along the block,
- * or turned, they have no equilibrium, and the report says which way. */
+/* Smooth and round, or a plate in space: nothing resists that they turn, or that the plate goes along the block, so
+ * they do not. Their angles were round-off over round-off, and the plate was thrown out of the grid. Pushed along the
+ * block, or turned, they have no equilibrium, and the report says which way. */
 typedef struct {
   Hit hit;
   PetscBool plate;
