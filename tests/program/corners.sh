@@ -1,6 +1,7 @@
 #!/bin/sh
 # Corners of one wall hold a body that fills them by both sides: a block in a room without friction is pressed by its own
-# weight as a column is, whatever the room is made of, and with friction the room does what walls of their own do.
+# weight as a column is, whatever the room is made of, and with friction the room does what walls of their own do. Corners
+# of a body that slide along another one make no energy.
 . "$(dirname "$0")/library.sh"
 
 cat >case.yaml <<'END'
@@ -134,5 +135,38 @@ for load in '(y - 0.07)^2:-10000:1e-6' 'max(0, 1 - (y - 0.07) / 0.25):-3750:40';
   expect "a load that varies, ${load%%:*} on $ranks" 0 on_ranks $ranks "$talus" run varies.yaml --out varies --force --quiet --set "loads.tractions[0].factor=${load%%:*}"
   tail -n 1 varies/history.csv | awk -F, -v is="${rest%:*}" -v off="${rest#*:}" '{ exit !($3 - is < off && is - $3 < off) }' || fail "$name: $(tail -n 1 varies/history.csv)"
 done
+
+# The corner of a soft block slides up the side of a stiff one that turns: whichever is named first, what is left of the
+# 515 J that came in is no more than friction leaves.
+cat >slides.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: dynamic, end: 0.4, step: 1e-3}
+grid: {box: {min: [1, 1.5], max: [3.25, 3]}, size: 0.125}
+bodies:
+  - {name: soft, shape: {box: {min: [1, 1.5], max: [2, 2.5]}}, material: soft, velocity: [1, 0]}
+  - {name: stiff, shape: {box: {min: [2.25, 2], max: [3.25, 3]}}, material: stiff, spin: 0.3, spin_centre: [2.75, 2.5]}
+materials:
+  soft: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}
+  stiff: {law: neo-hookean, density: 2000, young: 1e9, poisson: 0.2}
+interfaces: [{name: joint, between: [stiff, soft], friction: 0.3}]
+measures: {mechanical: {energy: mechanical}, friction: {energy: friction}}
+output: {fields: [displacement], every: end}
+END
+wide='grid={box: {min: [0.5, 1], max: [4, 3.5]}, size: 0.125}'
+# left_of NAME LEAST RANKS OPTIONS...
+left_of() {
+  name=$1 least=$2 ranks=$3
+  shift 3
+  expect "$name" 0 on_ranks $ranks "$talus" run slides.yaml --out slides --force --quiet "$@"
+  awk -F, -v least=$least 'NR > 1 && $3 + $4 > 515.5 { bad = 1 } END { exit bad || $3 < least }' slides/history.csv ||
+    fail "$name: $(tail -n 1 slides/history.csv)"
+}
+left_of "a corner along a side" 440 1
+left_of "a corner along a side, 2 ranks" 440 2
+left_of "a corner along a side, half the step" 440 1 --set analysis.step=5e-4
+left_of "a corner along a side, mpm" 440 1 --set method=mpm --set "$wide" \
+  --set analysis.transfer=consistent --set analysis.step=5e-4
+left_of "a corner along a side, its body first" 480 1 --set 'interfaces[0].between=[soft, stiff]'
 
 finish

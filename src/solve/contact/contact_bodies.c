@@ -5,7 +5,7 @@
 #include "solve/contact/contact.h"
 #include "solve/contact/surface/surface.h"
 
-#define LEAP 0.02 /* of a cell: a gap that leaps by more is one, as behind a corner */
+#define LEAP 0.02 /* of a cell: a gap that leaps open by more is one, as behind a corner */
 
 /* Local nodes by their numbers in the whole grid: owned ones follow each other, ghosts are sorted. */
 typedef struct {
@@ -77,19 +77,26 @@ static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, co
   PetscFunctionReturn(0);
 }
 
+/* By what the gap of a point has leapt, m: steps end with no overlap, so whatever there is at the start of one is a leap,
+ * touched or not; its reach has no more to give than is left of it. */
+static PetscReal leap_of(const Contact *s, const NodalScene *scene, const ContactPoint *c)
+{
+  const PetscReal thinnest = THINNEST * scene->points->real[POINT_REACH][c->owner];
+  if (c->open < 0) return PetscMax(c->open, PetscMin(0, thinnest - c->reach));
+  return c->before != CONTACT_OPEN && c->open <= LEAP * s->length ? c->open : 0;
+}
+
 /* Where it slides, a point stands before ever other points of the other body, whose surfaces do not go on into each
- * other: to close what its gap so leaps by would take a force that grows with the square of the step's shortness. So
- * its reach takes that up, and gives it back as it slides on: what comes under the front of a punch would grow ever
- * thicker, or thinner. */
-static void go_on_touching(const Contact *s, const PetscReal *kept, ContactPoint *c)
+ * other: to close what its gap so leaps by would take a force that grows with the square of the step's shortness, and
+ * to push out what it leaps into the other body by as much energy. So its reach takes that up, and gives it back as it
+ * slides on: what comes under the front of a punch would grow ever thicker, or thinner. */
+static void go_on_touching(const Contact *s, const NodalScene *scene, const PetscReal *kept, ContactPoint *c)
 {
   c->leapt = kept[KEPT_LEAPT(s->dim)];
-  const PetscReal back = kept[KEPT_TAKES(s->dim)] * c->leapt;
-  if (c->before != CONTACT_OPEN && PetscAbsReal(c->open) <= LEAP * s->length) {
-    c->leapt += c->open;
-    c->reach += c->open;
-    c->open = 0;
-  }
+  const PetscReal back = kept[KEPT_TAKES(s->dim)] * c->leapt, leap = leap_of(s, scene, c);
+  c->leapt += leap;
+  c->reach += leap;
+  c->open -= leap;
   c->leapt -= back;
   c->reach -= back;
   c->open += back;
@@ -114,7 +121,7 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
   contact_take_law(s, scene, c);
   contact_remember(c, s->dim, kept, pair->normal);
   c->open = pair->gap - c->reach;
-  if (scene->c->analysis.type == ANALYSIS_DYNAMIC) go_on_touching(s, kept, c);
+  if (scene->c->analysis.type == ANALYSIS_DYNAMIC) go_on_touching(s, scene, kept, c);
   if (contact_passes(s, c, c->open, scene->first)) {
     --s->n;
     PetscFunctionReturn(0);
