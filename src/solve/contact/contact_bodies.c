@@ -77,7 +77,7 @@ static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, co
   PetscFunctionReturn(0);
 }
 
-/* By what the gap of a point has leapt, m: steps end with no overlap, so whatever there is at the start of one is a leap,
+/* By what the gap of a point has leapt, m: steps end with no overlap, so what there is at the start of one is a leap,
  * touched or not; its reach has no more to give than is left of it. */
 static PetscReal leap_of(const Contact *s, const NodalScene *scene, const ContactPoint *c)
 {
