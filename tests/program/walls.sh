@@ -422,4 +422,27 @@ turn
 expect "passive" 0 on_ranks $ranks "$talus" run passive.yaml --out passive --quiet
 awk -F, 'END { exit ($3 / 1e4 - 3) ^ 2 > 0.05 ^ 2 }' passive/history.csv || fail "$name: $(tail -n 1 passive/history.csv)"
 
+# A rough punch whose edges stand just beside points of coarse cells goes all of its steps, however many, to one force.
+# It gave up within the first third, the sooner the rougher: the normal of what is all but at an edge turned by a right
+# angle within its gap.
+cat >edges.yaml <<'END'
+kinematics: 3d
+method: fem
+analysis: {type: static, steps: 5}
+grid: {box: {min: [0, 0, 0], max: [1, 1, 1]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{on: {z: 0}, fix: [x, y, z]}]
+walls: [{name: w, shape: {box: {min: [0.2, 0.2, 1], max: [2.2, 0.8, 2]}}, friction: 0.3, motion: [{displacement: {z: -0.03}}]}]
+measures: {f: {wall_force: z, of: {wall: w}}}
+output: {every: end}
+END
+for way in "friction: 0.3, method=fem" "friction: 0.3, method=gmm" "contact: stick, analysis.steps=20"; do
+  turn
+  sed "s/friction: 0.3/${way%%,*}/" edges.yaml >edge.yaml
+  expect "edges beside points, $way on $ranks" 0 on_ranks $ranks "$talus" run edge.yaml --out edge --force --set "${way#*, }"
+  grep -q 'halvings = 0' out.txt || fail "$name: $(grep halvings out.txt)"
+  awk -F, 'END { exit !(NR > 5 && ($NF / -31000 - 1) ^ 2 < 0.02 ^ 2) }' edge/history.csv || fail "$name: $(tail -n 1 edge/history.csv)"
+done
+
 finish

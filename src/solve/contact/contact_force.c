@@ -1,8 +1,7 @@
 /* The law at contact points, and what it puts into forces and tangent of nodes. */
 #include "solve/contact/contact.h"
 
-#define ROUND_CORNER 0.9 /* cosine: a normal that has turned by more in a step belongs to another face; */
-#define FACE_ASIDE 0.999 /* and of a flat face beside an edge that its owner sees */
+#define ROUND_CORNER 0.9 /* cosine: a normal that has turned by more in a step belongs to another face */
 
 static void take_way(const Contact *s, const ContactPoint *c, const PetscReal *du, PetscReal whole, PetscReal way[3])
 {
@@ -26,15 +25,10 @@ PetscReal contact_went(const Contact *s, const ContactPoint *c, const PetscReal 
   return PetscSqrtReal(square);
 }
 
-static PetscBool is_flat(const WallPlace *place)
-{
-  PetscReal most = 0;
-  for (int i = 0; i < 9; ++i) most = PetscMax(most, PetscAbsReal(place->curvature[i]));
-  return (PetscBool)(most == 0);
-}
-
 /* A place in the wall, beside a corner, may be nearer to another face than that which the material came to: it would be
- * pushed out there, in every step anew. Then the owner, which stands outside, sees the wall for it. */
+ * pushed out there, in every step anew. Then the owner, which stands outside, sees the wall for it. So it does before
+ * an edge: for the place, which is all but there, the normal turns by a right angle within the gap, and Newton's method
+ * goes in circles; to the owner the edge is as round as it is far. */
 static PetscBool see_wall(const Contact *s, ContactPoint *c, PetscReal t, const PetscReal x[3], WallPlace *place)
 {
   PetscReal along = 0, owner[3];
@@ -46,7 +40,7 @@ static PetscBool see_wall(const Contact *s, ContactPoint *c, PetscReal t, const 
   }
   if (!wall_near(s->walls, c->wall, t, x, 2 * s->near, c->side, place)) return PETSC_FALSE;
   for (int d = 0; d < 3; ++d) along += place->normal[d] * c->facing[d];
-  if (along > (c->edge && is_flat(place) ? FACE_ASIDE : ROUND_CORNER)) return c->ahead = along * c->reach, PETSC_TRUE;
+  if (!c->edge && along > ROUND_CORNER) return c->ahead = along * c->reach, PETSC_TRUE;
   for (int d = 0; d < 3; ++d) owner[d] = x[d] + c->reach * c->facing[d];
   if (!wall_near(s->walls, c->wall, t, owner, 2 * s->near + c->reach, c->side, place)) return PETSC_FALSE;
   along = 0;
