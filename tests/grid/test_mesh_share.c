@@ -284,11 +284,36 @@ static void two_cells(void **state)
   CALL(GridDestroy(&grid));
 }
 
+/* Every rank knows of a node that it has, a cell of its own or not, which sets it is in. */
+static void same_on_owners(const Grid *grid, const GridSet *set)
+{
+  PetscReal *here, *there;
+  CALL(PetscCalloc2(grid->n_nodes, &here, grid->n_nodes, &there));
+  for (PetscInt k = 0; k < set->n_nodes; ++k) here[set->nodes[k]] = there[set->nodes[k]] = 1;
+  CALL(GridToGhosts(grid, 1, there));
+  same_reals(grid->n_nodes, here, there);
+  CALL(PetscFree2(here, there));
+}
+
+static void ghosts_of_surfaces(void **state)
+{
+  (void)state;
+  generate("block", "wide.msh", "-3 -setnumber n 3 -setnumber bricks 1");
+  Grid *grid = read_mesh("wide.msh", 3);
+  const PetscInt before = count_over_ranks(grid->n_nodes);
+  CALL(GridWiden(&grid, 2));
+  assert_true(ranks() == 1 || count_over_ranks(grid->n_nodes) > before);
+  for (PetscInt s = 0; s < grid->n_sets; ++s) same_on_owners(grid, grid->sets + s);
+  same_on_owners(grid, &grid->outer);
+  CALL(GridDestroy(&grid));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(there_and_back), cmocka_unit_test(all_to_one), cmocka_unit_test(follows_weight),
-    cmocka_unit_test(not_worth_it),   cmocka_unit_test(by_table),   cmocka_unit_test(two_cells),
+    cmocka_unit_test(there_and_back),     cmocka_unit_test(all_to_one), cmocka_unit_test(follows_weight),
+    cmocka_unit_test(not_worth_it),       cmocka_unit_test(by_table),   cmocka_unit_test(two_cells),
+    cmocka_unit_test(ghosts_of_surfaces),
   };
   return run_grid_tests(argc, argv, tests, sizeof tests / sizeof *tests, setup, teardown);
 }

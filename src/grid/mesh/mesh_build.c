@@ -285,6 +285,23 @@ static PetscErrorCode SortSet(const Grid *grid, GridSet *set)
   PetscFunctionReturn(0);
 }
 
+/* Of ghosts without cells nobody has sent which sets they are in: their owners tell. */
+static PetscErrorCode KnowMembers(const Grid *grid, GridSet *set)
+{
+  PetscReal *member;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(grid->n_nodes, &member));
+  for (PetscInt k = 0; k < set->n_nodes; ++k) member[set->nodes[k]] = 1;
+  PetscCall(GridToGhosts(grid, 1, member));
+  set->n_nodes = 0;
+  PetscCall(PetscRealloc(sizeof(PetscInt) * (size_t)grid->n_nodes, &set->nodes));
+  for (PetscInt i = 0; i < grid->n_nodes; ++i)
+    if (member[i] > 0) set->nodes[set->n_nodes++] = i;
+  PetscCall(PetscFree(member));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode FillSets(Grid *grid, const MeshPart *in, const Arrivals *a)
 {
   const PetscInt n_faces = mesh_faces(grid);
@@ -308,7 +325,10 @@ static PetscErrorCode FillSets(Grid *grid, const MeshPart *in, const Arrivals *a
     if (m->kind == MEMBER_FACE) s->face_cell[s->n_faces++] = at * n_faces + m->side;
     else s->cells[s->n_cells++] = at;
   }
-  for (PetscInt s = 0; s <= grid->n_sets; ++s) PetscCall(SortSet(grid, set[s]));
+  for (PetscInt s = 0; s <= grid->n_sets; ++s) {
+    PetscCall(SortSet(grid, set[s]));
+    if (grid->mesh->knows_surface) PetscCall(KnowMembers(grid, set[s]));
+  }
   PetscCall(PetscFree(set));
   PetscFunctionReturn(0);
 }
