@@ -359,6 +359,13 @@ for ranks in 1 2; do
   expect "layers on $ranks" 0 on_ranks $ranks "$talus" run layers.yaml --out layers --force --quiet
   awk -F, 'END { for (k = 3; k <= 5; ++k) if (!($k < 1e-9)) exit 1 }' layers/history.csv || fail "$name: $(tail -n 1 layers/history.csv)"
 done
+# A body without a shape would weigh nothing there
+cat >ground.geo <<'END'
+Point(1) = {0, 0, 0, 1}; Point(2) = {1, 0, 0, 1}; Point(3) = {1, 1, 0, 1}; Point(4) = {0, 1, 0, 1};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Curve Loop(1) = {1:4}; Plane Surface(1) = {1}; Physical Surface("ground") = {1};
+END
+expect "a layer without a shape" 2 "$talus" run layers.yaml --out layers --force --quiet --set 'bodies[1]={name: high, mesh: ground.geo, material: light, points_per_cell: 3}'
+says err.txt "the weight of level layers is that of their shapes, and 'high' has none"
 # What moves, and when: statics have no motion, and what comes with a stage brings its own into the accounts.
 cat >comes.yaml <<'END'
 kinematics: plane-strain

@@ -64,6 +64,20 @@ static void range_of_at(const Model *m, const MeasureSpec *s, PetscReal *low, Pe
   }
 }
 
+/* The weight above is that of shapes: a body without one would weigh nothing there. */
+static void check_layers(const Model *m, const MeasureSpec *s, Diag *diag)
+{
+  char path[256];
+  for (PetscInt b = 0; b < m->c->n_bodies && !strcmp(s->kind, "overburden"); ++b) {
+    if (m->c->bodies[b].has_shape) continue;
+    PetscSNPrintf(path, sizeof path, "measures.%s.overburden", s->name);
+    diag_error(diag, path, "the weight of level layers is that of their shapes, and '%s' has none",
+               m->c->bodies[b].name);
+    diag_hint(diag, "give it a shape, or measure the stress itself: stress: yy, in: {box: ...}");
+    return;
+  }
+}
+
 void measures_check(const Model *m, Diag *diag)
 {
   for (PetscInt k = 0; k < m->c->n_measures; ++k) {
@@ -71,6 +85,7 @@ void measures_check(const Model *m, Diag *diag)
     const PetscReal *low = m->grid->min, *high = m->grid->max;
     PetscReal min[3], max[3], first, last;
     PetscBool meets = PETSC_TRUE;
+    check_layers(m, s, diag);
     range_of_at(m, s, &first, &last);
     if (s->has_at && (s->at < first || s->at > last)) outside_grid(m, s, "at", diag);
     if (!s->has_in) continue;

@@ -132,8 +132,9 @@ const Measure measure_overburden = {
   .key = "overburden",
   .takes = MEASURE_WORD,
   .number = {.unit = "",
-             .help = "how far the stress along gravity in level layers, bodies with a shape, is off the weight above "
-                     "it, over that of all layers there: 0 between smooth walls, but for what cells "
-                     "cannot follow (a linear cell has the stress of its middle: of 16 cells on each other, 0.0156 "
-                     "at points a quarter from their sides)"},
+             .help =
+               "how far the stress along gravity in level layers is off the weight above it, over that of all "
+               "layers there (the shapes of all bodies, which need one): 0 between smooth walls, but for what cells "
+               "cannot follow (a linear cell has the stress of its middle: of 16 cells on each other, 0.0156 "
+               "at points a quarter from their sides)"},
   .words = words};
