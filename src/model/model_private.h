@@ -296,8 +296,8 @@ PetscErrorCode FindHeld(const Model *model, PetscInt *held);
 /* rests.c. Collective. A warning for each body whose weight nothing but friction along walls bears. */
 PetscErrorCode AdviseRests(const Model *model, Diag *diag);
 /* Collective. of (n_nodes, 0 on entry): of the bodies that share nodes, directly or through others, the first one's
- * number from 1 on, where they touch the node. */
-PetscErrorCode JoinedBodies(const Model *model, PetscReal *of);
+ * number from 1 on, where they touch the node; meet: or that touch at interfaces. */
+PetscErrorCode JoinedBodies(const Model *model, PetscBool meet, PetscReal *of);
 /* Loads out of balance, of the forces that there are: more than Newton's method leaves. */
 #define UNHELD_BALANCE 1e-6
 /* Likewise, of pressures on a surface whose parts go with points, and come to overlap and gape by that. */
@@ -305,8 +305,8 @@ PetscReal unheld_open_surface(const Model *model);
 /* start/unheld.c. Collective. analysis.unheld: hold: what nothing holds is told, and a mistake where the loads of the
  * first step push it. */
 PetscErrorCode UnheldCheck(Model *model, Diag *diag);
-/* Collective. Otherwise: a mistake where nothing keeps a body from turning in walls that are smooth and round, and
- * loads leave it as it lies. */
+/* Collective. Otherwise: a mistake where nothing keeps a body from turning, in walls or sides that are smooth and round,
+ * and loads leave it as it lies. */
 PetscErrorCode UnheldTurning(Model *model, Diag *diag);
 /* Collective. After mark_fixed, in each step: as few directions of nodes as hold it. */
 PetscErrorCode UnheldHold(Model *model);

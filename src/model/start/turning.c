@@ -1,5 +1,5 @@
-/* Statics of bodies in smooth walls that are round about one axis: nothing holds the turn about it, while every
- * direction is held (advice/held.c). What is known of motions and holds is that of unheld.c (docs/theory.md,
+/* Statics of bodies in smooth walls, or held along normals of sides, that are round about one axis: nothing holds the
+ * turn about it, while every direction is held (advice/held.c). What is known of motions and holds is that of unheld.c (docs/theory.md,
  * section 60). */
 #include "model/start/unheld_private.h"
 
@@ -25,7 +25,7 @@ static void add_work(const Model *m, const UnheldGroup *g, const PetscReal motio
 }
 
 /* Do the loads of the first step leave it where it is along its free motions, and where it is put along them? What they
- * turn, or hold as a pendulum, has an answer. */
+ * turn, or hold as a pendulum, has an answer, and what nothing pushes stays where its boundary has it. */
 static PetscErrorCode LoadsLeave(const Model *m, const UnheldGroup *g, PetscBool *leave)
 {
   PetscReal sums[2 * RIGID + 1] = {0}, pull[3], most = 0;
@@ -41,7 +41,7 @@ static PetscErrorCode LoadsLeave(const Model *m, const UnheldGroup *g, PetscBool
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, 2 * RIGID + 1, MPIU_REAL, MPIU_SUM, m->comm));
   for (PetscInt k = 0; k < 2 * RIGID; ++k) most = PetscMax(most, PetscAbsReal(sums[k]));
-  *leave = (PetscBool)(most <= NEUTRAL * sums[2 * RIGID]);
+  *leave = (PetscBool)(most <= NEUTRAL * sums[2 * RIGID] && (m->contact || sums[2 * RIGID] > 0));
   PetscFunctionReturn(0);
 }
 
@@ -72,18 +72,15 @@ static PetscErrorCode WallsWouldHold(const Model *m, UnheldGroup *g)
   PetscFunctionReturn(0);
 }
 
-/* Does it touch a wall, and is there no other body that it could come to touch? */
-static PetscErrorCode AmongWallsAlone(const Model *m, const UnheldGroup *g, PetscBool *alone)
+/* Is there no other body that it could come to touch? */
+static PetscErrorCode IsAlone(const Model *m, const UnheldGroup *g, PetscBool *alone)
 {
-  const Contact *s = m->contact;
-  PetscInt found[2] = {0, 0}; /* contact, other bodies */
+  PetscInt others = 0;
 
   PetscFunctionBeginUser;
-  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
-    found[0] |= contact_touched(c) && unheld_is_of(g, s->node[c->first]);
-  for (PetscInt node = 0; node < m->grid->n_owned; ++node) found[1] |= g->of[node] != 0 && !unheld_is_of(g, node);
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, found, 2, MPIU_INT, MPI_MAX, m->comm));
-  *alone = (PetscBool)(found[0] && !found[1]);
+  for (PetscInt node = 0; node < m->grid->n_owned; ++node) others |= g->of[node] != 0 && !unheld_is_of(g, node);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &others, 1, MPIU_INT, MPI_MAX, m->comm));
+  *alone = (PetscBool)!others;
   PetscFunctionReturn(0);
 }
 
@@ -104,17 +101,17 @@ static PetscErrorCode RefuseTurning(Model *m, UnheldGroup *g, Diag *diag)
   char path[64];
 
   PetscFunctionBeginUser;
-  PetscCall(AmongWallsAlone(m, g, &alone));
+  PetscCall(IsAlone(m, g, &alone));
   if (!alone) PetscFunctionReturn(0);
-  PetscCall(WallsWouldHold(m, g));
+  if (m->contact) PetscCall(WallsWouldHold(m, g));
   if (!only_turns(m, g)) PetscFunctionReturn(0);
   PetscCall(LoadsLeave(m, g, &leave));
   if (!leave) PetscFunctionReturn(0);
   snprintf(path, sizeof path, "bodies[%d]", (int)g->body);
-  diag_error(diag, path, "nothing holds '%s' from turning in its smooth round walls: a static analysis has no answer",
-             m->c->bodies[g->body].name);
-  diag_hint(diag,
-            "analysis: {unheld: hold} keeps it from that by nodes that bear nothing; or friction: 0.01 on a wall");
+  diag_error(diag, path, "nothing holds '%s' from turning%s: a static analysis has no answer",
+             m->c->bodies[g->body].name, m->contact ? " in its smooth round walls" : "");
+  diag_hint(diag, "analysis: {unheld: hold} keeps it from that by nodes that bear nothing; or %s",
+            m->contact ? "friction: 0.01 on a wall" : "fix a boundary at one more node");
   PetscFunctionReturn(0);
 }
 
@@ -124,13 +121,13 @@ PetscErrorCode UnheldTurning(Model *m, Diag *diag)
   const NodalScene scene = nodal_scene(m, end, m->nodes->du);
 
   PetscFunctionBeginUser;
-  if (m->c->analysis.type != ANALYSIS_STATIC || m->method->clouds || m->c->n_interfaces || !m->contact ||
-      m->contact->n_rigid)
+  if (m->c->analysis.type != ANALYSIS_STATIC || m->method->clouds || m->c->n_interfaces ||
+      (m->contact && m->contact->n_rigid))
     PetscFunctionReturn(0);
   for (PetscInt k = 0; k < m->c->n_walls; ++k) /* one that comes later may hold it */
     if (!wall_comes(m->contact->walls, k, m->time)) PetscFunctionReturn(0);
   PetscCall(NodalForcesBegin(&m->forces, &scene));
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, m->nodes->external));
-  PetscCall(UnheldEach(m, diag, RefuseTurning));
+  PetscCall(UnheldEach(m, PETSC_FALSE, diag, RefuseTurning));
   PetscFunctionReturn(0);
 }

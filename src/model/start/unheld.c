@@ -164,13 +164,39 @@ void unheld_add_place(const Model *m, const UnheldGroup *g, const PetscReal *x, 
   }
 }
 
-/* Of what touches walls. */
-static void add_walls(const Model *m, const UnheldGroup *g, PetscReal *sum)
+/* Does it touch a wall there, or a body that is not of it? */
+static PetscBool leans_on(const Contact *s, const UnheldGroup *g, const ContactPoint *c)
+{
+  const PetscBool own = unheld_is_of(g, s->node[c->first]);
+  if (!contact_touched(c)) return PETSC_FALSE;
+  return c->wall < s->n_walls ? own : (PetscBool)(own != unheld_is_of(g, s->node[c->first + c->own]));
+}
+
+static void add_contact(const Model *m, const UnheldGroup *g, PetscReal *sum)
 {
   const Contact *s = m->contact;
-  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
-    if (contact_touched(c) && unheld_is_of(g, s->node[c->first]))
-      unheld_add_place(m, g, c->x, c->normal, c->law.kind != CONTACT_FRICTIONLESS, sum);
+  for (const ContactPoint *c = s ? s->point : NULL; s && c < s->point + s->n; ++c)
+    if (leans_on(s, g, c)) unheld_add_place(m, g, c->x, c->normal, c->law.kind != CONTACT_FRICTIONLESS, sum);
+}
+
+/* Of what other forces hold, as springs do: along the axes. */
+static PetscErrorCode AddForces(const Model *m, const UnheldGroup *g, PetscReal *sum)
+{
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  unsigned char *held;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &held));
+  for (PetscInt k = 0; k < m->forces.n; ++k)
+    if (m->forces.one[k].kind->hold && m->forces.one[k].data != m->contact)
+      m->forces.one[k].kind->hold(m->forces.one[k].data, &scene, held);
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
+    const PetscInt node = i / m->dim, d = i % m->dim;
+    const PetscReal axis[3] = {d == 0, d == 1, d == 2};
+    if (held[i] && unheld_is_of(g, node)) unheld_add_place(m, g, m->grid->x + node * m->dim, axis, PETSC_FALSE, sum);
+  }
+  PetscCall(PetscFree(held));
+  PetscFunctionReturn(0);
 }
 
 PetscErrorCode UnheldTake(const Model *m, UnheldGroup *g, PetscReal *sum)
@@ -196,14 +222,14 @@ PetscErrorCode UnheldTake(const Model *m, UnheldGroup *g, PetscReal *sum)
   PetscFunctionReturn(0);
 }
 
-/* What walls hold that it touches is not free, as long as they push. */
-static PetscErrorCode WallsHold(const Model *m, UnheldGroup *g)
+/* What walls and other bodies hold that it touches is not free, as long as they push, nor what other forces hold. */
+static PetscErrorCode ForcesHold(const Model *m, UnheldGroup *g)
 {
   PetscReal sum[RIGID * RIGID] = {0};
 
   PetscFunctionBeginUser;
-  if (!m->contact) PetscFunctionReturn(0);
-  add_walls(m, g, sum);
+  add_contact(m, g, sum);
+  PetscCall(AddForces(m, g, sum));
   PetscCall(UnheldTake(m, g, sum));
   PetscFunctionReturn(0);
 }
@@ -240,8 +266,18 @@ static PetscErrorCode GroupLook(const Model *m, UnheldGroup *g, PetscBool *any)
     if (hold.strength < LEVER) break;
     count_in(g, &hold);
   }
-  PetscCall(WallsHold(m, g));
+  PetscCall(ForcesHold(m, g));
   PetscFunctionReturn(0);
+}
+
+void unheld_keep_from_turning(const Model *m, UnheldGroup *g)
+{
+  PetscReal along[RIGID];
+  for (PetscInt k = m->dim; k < g->n; ++k) {
+    PetscReal row[RIGID] = {0};
+    row[k] = 1;
+    if (strength_of(g, row, along) > LEVER) take_away(g, row);
+  }
 }
 
 /* Hold one more direction of a node, on every rank that knows it. */
@@ -263,16 +299,17 @@ static PetscErrorCode HoldOne(Model *m, UnheldGroup *g, Which which)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode UnheldEach(Model *m, Diag *diag, PetscErrorCode (*visit)(Model *m, UnheldGroup *g, Diag *diag))
+PetscErrorCode UnheldEach(Model *m, PetscBool meet, Diag *diag,
+                          PetscErrorCode (*visit)(Model *m, UnheldGroup *g, Diag *diag))
 {
   PetscReal *of;
   PetscBool any = PETSC_FALSE;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(m->grid->n_nodes, &of));
-  PetscCall(JoinedBodies(m, of));
+  PetscCall(JoinedBodies(m, meet, of));
   for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
-    UnheldGroup g = {.body = b, .of = of};
+    UnheldGroup g = {.body = b, .of = of, .meet = meet};
     PetscCall(GroupLook(m, &g, &any));
     if (any && g.n_free) PetscCall((*visit)(m, &g, diag));
   }
@@ -280,8 +317,7 @@ PetscErrorCode UnheldEach(Model *m, Diag *diag, PetscErrorCode (*visit)(Model *m
   PetscFunctionReturn(0);
 }
 
-/* "in x and y, and from turning" */
-static void name_free(const Model *m, const UnheldGroup *g, char text[64])
+void unheld_name_free(const Model *m, const UnheldGroup *g, char text[64])
 {
   const PetscInt lines = PetscMin(m->dim, g->n);
   PetscReal along[RIGID];
@@ -350,7 +386,7 @@ static PetscErrorCode CheckGroup(Model *m, UnheldGroup *g, Diag *diag)
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sums, RIGID + 1, MPIU_REAL, MPIU_SUM, m->comm));
   for (PetscInt f = 0; f < g->n_free; ++f) most = PetscMax(most, PetscAbsReal(sums[f]));
   snprintf(path, sizeof path, "bodies[%d]", (int)g->body);
-  name_free(m, g, text);
+  unheld_name_free(m, g, text);
   note_free(m, g);
   if (most > (case_load_follows(m->c) ? unheld_open_surface(m) : UNHELD_BALANCE) * sums[RIGID]) {
     diag_error(diag, path, "nothing holds '%s' %s, and loads push it that way: %.3g of %.3g N are out of balance",
@@ -378,7 +414,7 @@ PetscErrorCode UnheldCheck(Model *m, Diag *diag)
   PetscCall(PetscMalloc2(RIGID * m->c->n_bodies, &m->unheld.dof, RIGID * m->c->n_bodies, &m->unheld.turns));
   PetscCall(NodalForcesBegin(&m->forces, &scene));
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, m->nodes->external));
-  PetscCall(UnheldEach(m, diag, CheckGroup));
+  PetscCall(UnheldEach(m, PETSC_FALSE, diag, CheckGroup));
   PetscFunctionReturn(0);
 }
 
@@ -404,6 +440,6 @@ PetscErrorCode UnheldHold(Model *m)
   PetscFunctionBeginUser;
   m->unheld.n = m->unheld.turning = 0;
   m->unheld.size = 0;
-  if (m->c->analysis.unheld == UNHELD_HOLD) PetscCall(UnheldEach(m, NULL, HoldGroup));
+  if (m->c->analysis.unheld == UNHELD_HOLD) PetscCall(UnheldEach(m, PETSC_FALSE, NULL, HoldGroup));
   PetscFunctionReturn(0);
 }

@@ -1,4 +1,4 @@
-/* Rigid motions that nothing holds, for start/unheld.c and start/turning.c. */
+/* Rigid motions that nothing holds, for start/unheld.c, start/turning.c and start/advice/held.c. */
 #pragma once
 #include "model/model_private.h"
 
@@ -8,6 +8,7 @@
 typedef struct {
   PetscInt body;                   /* the first of them */
   const PetscReal *of;             /* n_nodes: body + 1 where they touch the node */
+  PetscBool meet;                  /* do those that touch at interfaces move as one, too? */
   PetscReal centre[3], size, mass; /* m; half of their diagonal; the largest of a node, kg */
   PetscReal plane[3];              /* nodes held along axis d stand at x_d = plane, if they can, m */
   PetscBool has_plane[3];
@@ -29,8 +30,14 @@ void unheld_add_place(const Model *model, const UnheldGroup *g, const PetscReal 
                       PetscBool rubs, PetscReal *sum);
 /* Collective. What such a sum, of this rank, holds is not free. */
 PetscErrorCode UnheldTake(const Model *model, UnheldGroup *g, PetscReal *sum);
-/* Collective. Calls back for each group that has a motion free, in the order of their bodies. */
-PetscErrorCode UnheldEach(Model *model, Diag *diag, PetscErrorCode (*visit)(Model *model, UnheldGroup *g, Diag *diag));
+/* Collective. Calls back for each group that has a motion free, in the order of their bodies. meet: bodies that touch
+ * at interfaces move as one, too; else each is to the other what a wall is. */
+PetscErrorCode UnheldEach(Model *model, PetscBool meet, Diag *diag,
+                          PetscErrorCode (*visit)(Model *model, UnheldGroup *g, Diag *diag));
+/* Of its free motions those are left that do not turn it. */
+void unheld_keep_from_turning(const Model *model, UnheldGroup *g);
+/* "in x and y, and from turning" */
+void unheld_name_free(const Model *model, const UnheldGroup *g, char text[64]);
 /* What loads and gravity push component i of the nodes with, N: m->nodes->external is known. */
 static inline PetscReal unheld_load(const Model *m, const PetscReal gravity[3], PetscInt i)
 {

@@ -1,7 +1,7 @@
 /* Is every body held? In statics a body that nothing prescribed reaches, through other bodies
  * neither, can be anywhere: the tangent is singular, and what a solver makes of that is no
  * answer. */
-#include "model/model_private.h"
+#include "model/start/unheld_private.h"
 
 PetscErrorCode BodyTouches(const Model *m, PetscInt body, PetscReal *touched)
 {
@@ -67,7 +67,24 @@ static void spread(PetscInt n, PetscInt dim, const PetscInt *joined, PetscInt *h
   }
 }
 
-PetscErrorCode JoinedBodies(const Model *m, PetscReal *of)
+/* Those that touch at interfaces are joined. */
+static PetscErrorCode JoinMeeting(const Model *m, PetscInt *joined)
+{
+  const PetscInt n = m->c->n_bodies;
+  const Contact *s = m->contact;
+
+  PetscFunctionBeginUser;
+  for (const ContactPoint *c = s ? s->point : NULL; s && c < s->point + s->n; ++c) {
+    if (c->wall < s->n_walls || !contact_touched(c)) continue;
+    char *const *between = m->c->interfaces[c->wall - s->n_walls].between;
+    const PetscInt a = case_body(m->c, between[0]), b = case_body(m->c, between[1]);
+    joined[a * n + b] = joined[b * n + a] = 1;
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, joined, (PetscMPIInt)(n * n), MPIU_INT, MPI_MAX, m->comm));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode JoinedBodies(const Model *m, PetscBool meet, PetscReal *of)
 {
   const PetscInt n = m->c->n_bodies, nodes = m->grid->n_nodes;
   PetscInt *joined, *held, *first;
@@ -76,6 +93,7 @@ PetscErrorCode JoinedBodies(const Model *m, PetscReal *of)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc4(n * n, &joined, n * m->dim, &held, n, &first, nodes, &touched));
   PetscCall(Touches(m, joined, held));
+  if (meet) PetscCall(JoinMeeting(m, joined));
   for (PetscInt b = 0; b < n; ++b) first[b] = b;
   for (PetscInt pass = 0; pass < n; ++pass)
     for (PetscInt k = 0; k < n * n; ++k)
@@ -162,8 +180,40 @@ static PetscErrorCode TellLoose(const Model *m, PetscBool ends, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+/* A way that is free although something leans towards each axis, as between planes that lie alike. */
+static PetscErrorCode RefuseLine(Model *m, UnheldGroup *g, Diag *diag)
+{
+  UnheldGroup line = *g;
+  char path[64], text[64];
+
+  PetscFunctionBeginUser;
+  unheld_keep_from_turning(m, &line);
+  if (!line.n_free) PetscFunctionReturn(0);
+  unheld_name_free(m, &line, text);
+  snprintf(path, sizeof path, "bodies[%d]", (int)g->body);
+  diag_error(diag, path, "nothing holds '%s'%s %s: a static analysis has no answer", m->c->bodies[g->body].name,
+             g->meet ? " and what it touches" : "", text);
+  diag_hint(diag,
+            "fix a boundary that the body touches that way, or let it move: analysis: {type: dynamic}; if its loads "
+            "are in balance: %s",
+            balance_hint(m));
+  PetscFunctionReturn(0);
+}
+
+/* Each body by itself, others standing where they are; then all that touch at interfaces as one. */
+static PetscErrorCode TellLines(Model *m, Diag *diag)
+{
+  const PetscInt before = diag_errors(diag);
+
+  PetscFunctionBeginUser;
+  PetscCall(UnheldEach(m, PETSC_FALSE, diag, RefuseLine));
+  if (m->c->n_interfaces && diag_errors(diag) == before) PetscCall(UnheldEach(m, PETSC_TRUE, diag, RefuseLine));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode CheckHeld(Model *m, Diag *diag)
 {
+  const PetscInt before = diag_errors(diag);
   PetscInt points;
 
   PetscFunctionBeginUser;
@@ -174,7 +224,8 @@ PetscErrorCode CheckHeld(Model *m, Diag *diag)
   PetscCall(ModelCountPoints(m, &points));
   if ((m->scheme->inertia && !case_equilibrates(m->c)) || !points) PetscFunctionReturn(0);
   PetscCall(TellLoose(m, PETSC_FALSE, diag));
-  PetscCall(UnheldTurning(m, diag));
+  if (diag_errors(diag) == before) PetscCall(TellLines(m, diag));
+  if (diag_errors(diag) == before) PetscCall(UnheldTurning(m, diag));
   PetscCall(AdviseRests(m, diag));
   PetscFunctionReturn(0);
 }
