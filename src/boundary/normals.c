@@ -165,7 +165,7 @@ static PetscErrorCode ListNodes(const Grid *grid, const Case *c, const PetscInt 
   for (PetscInt i = 0; i < grid->n_nodes; ++i) entry[i] = -1;
   *n = 0;
   for (PetscInt k = 0; k < c->n_boundary; ++k) {
-    if (!c->boundary[k].component[NORMAL]) continue;
+    if (!slides(c->boundary + k)) continue;
     PetscCall(EntryNodes(grid, c, c->boundary + k, field, &n_selected, &node));
     for (PetscInt i = 0; i < n_selected; ++i) {
       if (entry[node[i]] >= 0) continue;
@@ -190,7 +190,7 @@ PetscErrorCode WallNormals(const Grid *grid, const Case *c, const PetscInt *fiel
   PetscFunctionBeginUser;
   *n = 0;
   *nodes = NULL;
-  for (PetscInt k = 0; k < c->n_boundary; ++k) any |= c->boundary[k].component[NORMAL];
+  for (PetscInt k = 0; k < c->n_boundary; ++k) any |= slides(c->boundary + k);
   if (!any) PetscFunctionReturn(0);
   PetscCall(ListNodes(grid, c, field, n, nodes));
   PetscCall(CollectSides(grid, c, -1, &walls));
