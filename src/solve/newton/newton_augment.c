@@ -3,15 +3,16 @@
 #include "solve/newton/newton_private.h"
 #include <petsctime.h>
 
-/* The tangent must be that of this du, and as it was put in: not turned into frames. */
+/* The tangent must be that of this du, and as it was put in: turned into frames on no rank. */
 PetscErrorCode NewtonAugment(Newton *n, PetscBool *again)
 {
   const StepProblem *p = n->problem;
   const PetscInt dim = p->grid->dim, owned = p->grid->n_owned * dim;
-  const PetscBool stays = n->tangent && p->scene.contact && !p->system->n_turned && n->report->status == LAW_OK;
+  PetscBool stays = n->tangent && p->scene.contact && !p->system->n_turned && n->report->status == LAW_OK;
   double start, end;
 
   PetscFunctionBeginUser;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &stays, 1, MPIU_BOOL, MPI_LAND, n->comm));
   if (!stays) {
     PetscCall(NodalForcesAugment(p->forces, &p->scene, n->changes, again));
     if (*again) PetscCall(NewtonAssemble(n, PETSC_TRUE));
