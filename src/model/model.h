@@ -238,6 +238,7 @@ typedef struct {
   char reason[768];    /* why the run gives up, in words */
   /* why an equilibrium was not accepted, in words: newton.reason then points here */
   char leap[160];
+  PetscBool flows; /* did it do so in pseudo-time? */
   /* that made the step share the grid among the ranks anew; 0: it did not */
   PetscReal imbalance;
   PetscInt moved;          /* points that changed their rank for that */

@@ -153,6 +153,8 @@ void strength_set(Model *model, PetscReal factor);
 void strength_of_contact(Model *model);
 /* Collective. The largest increment of a node in the last step, or its last try, m. */
 PetscErrorCode LargestIncrement(const Model *model, PetscReal *largest);
+/* Does what has gone so far slide? Then report->leap says so. */
+PetscBool strength_slides(Strength *s, PetscReal moved, StepReport *report);
 /* Collective. Forces balance: but is it a body that stands, or one that has slid? */
 PetscErrorCode StrengthJudge(Model *model, StepReport *report);
 
@@ -175,6 +177,9 @@ PetscErrorCode StepStartRestore(Model *model, const StepStart *start, StepReport
 /* step/prepare.c. Collective. Which nodes have unknowns, on which ranks, and which are held; then
  * what a step changes before its solve. */
 PetscErrorCode PrepareUnknowns(Model *model, StepStart *start, StepReport *report);
+/* step/pseudo_time.c. Collective. The same of a step that Newton's method has lost in a search for the factor of safety,
+ * after PrepareStep: converged is what rests; report->leap says of what slides or flows that it does. newton.iterations: of all. */
+PetscErrorCode PseudoTimeSolve(Model *m, StepProblem *p, const LinearProblem *linear, StepReport *report);
 /* step/solve.c. Collective. The increments of a step of dt, or of halves of it: until Newton converges,
  * somebody interrupts it, or the step is too small. */
 PetscErrorCode SolveStep(Model *model, PetscReal *dt, StepReport *report);

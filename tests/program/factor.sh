@@ -405,6 +405,53 @@ expect "beyond its strength" 0 "$talus" run given.yaml --out run --force --set '
 awk -F, 'END { exit !($3 > 0 && $3 < 64) }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
 says out.txt "points, and brought back to it there once it yields"
 
+# Where Newton's method is lost pseudo-time tells what stands and what flows (docs/theory.md, section 77). A block on a
+# smooth slab slides at once, with nothing that would tell of it before; a slope of sand with hardly any cohesion was lost
+# with its own strength, in 11 tries of less and less (slices, by Bishop's method: 1.570)
+cat >sliding.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: factor-of-safety, reduction: {tolerance: 1e-3}}
+grid: {box: {min: [0, 0], max: [4, 1.25]}, size: 0.25}
+bodies:
+  - {name: low, shape: {box: {min: [0, 0], max: [4, 0.5]}}, material: m}
+  - {name: top, shape: {box: {min: [1, 0.5], max: [2, 0.75]}}, material: m}
+materials: {m: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0.3}}
+loads: {gravity: [2, -10]}
+boundary: [{on: {y: 0}, fix: [x, y], bodies: [low]}]
+interfaces: [{name: a, between: [top, low], friction: 0.3}]
+measures: {F: {factor_of_safety: value}, lower: {factor_of_safety: lower}, upper: {factor_of_safety: upper}}
+END
+for _ in 1 2 3; do
+  turn
+  expect "a block that slides on $ranks" 0 on_ranks $ranks "$talus" run sliding.yaml --out run --force --quiet
+  near 1.5
+done
+says run/factor.csv ",no,flows,"
+cat >sand.geo <<'END'
+Point(1) = {0, -5, 0, 2.5}; Point(2) = {55, -5, 0, 2.5}; Point(3) = {55, 0, 0, 2.5};
+Point(4) = {32, 0, 0, 2.5}; Point(5) = {12, 10, 0, 2.5}; Point(6) = {0, 10, 0, 2.5};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 5}; Line(5) = {5, 6}; Line(6) = {6, 1};
+Curve Loop(1) = {1:6}; Plane Surface(1) = {1};
+Physical Surface("slope") = {1}; Physical Curve("base") = {1}; Physical Curve("sides") = {2, 6};
+Mesh.Algorithm = 6; Mesh.RecombineAll = 1; Mesh.RecombinationAlgorithm = 1; Mesh.SubdivisionAlgorithm = 1; Mesh.Smoothing = 5;
+END
+cat >sand.yaml <<'END'
+kinematics: plane-strain
+method: fem
+formulation: mean-dilatation
+analysis: {type: factor-of-safety}
+grid: {mesh: sand.geo}
+bodies: [{name: slope, region: slope, points_per_cell: 4, material: sand}]
+materials: {sand: {law: mohr-coulomb, density: 2000, young: 1e8, poisson: 0.4, friction_angle: 35, cohesion: 1e3}}
+boundary: [{on: {boundary: base}, fix: [x, y]}, {on: {boundary: sides}, fix: [x]}]
+loads: {gravity: [0, -10]}
+measures: {F: {factor_of_safety: value}}
+END
+expect "a slope of sand" 0 "$talus" run sand.yaml --out run --force --quiet
+awk -F, 'END { exit !($3 > 1.53 && $3 < 1.61) }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
+says run/factor.csv "1,yes,stands,"
+
 # The title of a picture tells the factor, whenever the loads were on
 expect "loads on at 3 s" 0 "$talus" run clay_block.yaml --out run --force --quiet --set analysis.end=3
 near 1.2

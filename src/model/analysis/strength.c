@@ -200,6 +200,17 @@ static PetscReal rests_anew(const Strength *s, PetscReal by, PetscReal moved)
   return PetscMax(0, (moved * s->slid_by - s->slid * by) / (s->slid_by - by));
 }
 
+PetscBool strength_slides(Strength *s, PetscReal moved, StepReport *report)
+{
+  s->anew = rests_anew(s, s->by, moved);
+  if (moved - s->anew <= s->reach) return PETSC_FALSE;
+  snprintf(report->leap, sizeof report->leap, "it slides: %.3g m, for %.3g m that what stands moves at most",
+           (double)moved, (double)s->reach);
+  report->newton.converged = PETSC_FALSE;
+  report->newton.reason = report->leap;
+  return PETSC_TRUE;
+}
+
 PetscErrorCode StrengthJudge(Model *m, StepReport *report)
 {
   Strength *s = &m->strength;
@@ -208,12 +219,7 @@ PetscErrorCode StrengthJudge(Model *m, StepReport *report)
   PetscFunctionBeginUser;
   if (!s->trying) PetscFunctionReturn(0);
   PetscCall(LargestIncrement(m, &moved));
-  s->anew = rests_anew(s, s->by, moved);
-  if (moved - s->anew <= s->reach) PetscFunctionReturn(0);
-  snprintf(report->leap, sizeof report->leap, "it slides: %.3g m, for %.3g m that what stands moves at most",
-           (double)moved, (double)s->reach);
-  report->newton.converged = PETSC_FALSE;
-  report->newton.reason = report->leap;
+  if (!strength_slides(s, moved, report)) PetscFunctionReturn(0);
   s->slid_by = s->by;
   s->slid = moved;
   PetscFunctionReturn(0);

@@ -81,6 +81,26 @@ static PetscErrorCode OrderGuesses(Model *m, PetscReal dt, StepProblem *p, First
   PetscFunctionReturn(0);
 }
 
+/* Has Newton's method lost its way in a try of a search for the factor of safety? What goes too far is another thing;
+ * walls with mass have no inertia in statics that would hold them back; and where pressures at nodes lock what dilates
+ * inside a cell some of it flows in pseudo-time, too, long before anything fails (advice/strength.c). */
+static PetscBool is_lost(const Model *m, const StepReport *report)
+{
+  const PetscBool lost = (PetscBool)(!report->newton.converged && !report->newton.interrupted && !report->leap[0]);
+  const PetscBool floats = (PetscBool)(m->contact && m->contact->n_rigid > 0);
+  const PetscBool locks = (PetscBool)(m->formulation->pressure && case_dilates(m->c));
+  return (PetscBool)(lost && m->strength.trying && !floats && !locks);
+}
+
+static PetscErrorCode SolveInPseudoTime(Model *m, StepProblem *problem, const LinearProblem *linear, StepReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(PseudoTimeSolve(m, problem, linear, report));
+  if (report->newton.converged) PetscCall(StrengthJudge(m, report));
+  count_try(m, PETSC_TRUE, report);
+  PetscFunctionReturn(0);
+}
+
 /* Newton from the nearest first guess, and where it fails from the others: a step is halved only
  * if none of them leads to its solution. */
 static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProblem *linear, StepReport *report)
@@ -110,6 +130,7 @@ static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProbl
     count_try(m, k > 0, report);
     if (report->newton.converged || report->newton.interrupted) break;
   }
+  if (is_lost(m, report)) PetscCall(SolveInPseudoTime(m, &problem, linear, report));
   PetscFunctionReturn(0);
 }
 

@@ -31,7 +31,8 @@ static PetscBool balances(const StrengthRun *s, PetscInt i)
 
 static PetscBool slides(const StrengthRun *s, PetscInt i)
 {
-  return s->tries[i].outcome == TRY_SLIDES || s->tries[i].outcome == TRY_RUNS;
+  const TryOutcome outcome = (TryOutcome)s->tries[i].outcome;
+  return (PetscBool)(outcome == TRY_SLIDES || outcome == TRY_RUNS || outcome == TRY_FLOWS);
 }
 
 static PetscBool stands(const StrengthRun *s, PetscInt i) { return s->tries[i].outcome == TRY_STANDS; }
@@ -86,6 +87,14 @@ static PetscReal pace(const StrengthRun *s, PetscInt i)
   return (now->displacement - before->displacement) / (s->height * share);
 }
 
+/* Did it flow in pseudo-time, in the smallest of steps? */
+static PetscBool flowed(const StrengthRun *s)
+{
+  for (PetscInt i = 1; i < s->n; ++i)
+    if (s->tries[i].outcome == TRY_FLOWS && s->tries[i].factor == s->search.failed) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Did the body go ever faster, and with the smallest factor that fails run away? */
 static PetscBool ran(const StrengthRun *s)
 {
@@ -108,7 +117,7 @@ static PetscBool is_doubtful(const StrengthRun *s)
     if (s->tries[i].outcome == TRY_LOST && s->tries[i].factor >= s->search.failed) lost = PETSC_TRUE;
     if (stands(s, i)) flows = stores_nothing(s, i);
   }
-  if (!lost || last == 0 || slid(s) || ran(s)) return PETSC_FALSE;
+  if (!lost || last == 0 || slid(s) || ran(s) || flowed(s)) return PETSC_FALSE;
   const PetscInt before = strength_stood_before(s, last);
   const PetscReal taken = strength_share(s->tries[last].factor - s->tries[before].factor, s->tries[last].factor);
   return (PetscBool)(!flows || s->tries[last].moved < NEARLY_SLIDES * s->height * taken);
@@ -130,7 +139,8 @@ static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *d
   if (m->strength.lost) {
     PetscCall(RunDirLog(dir,
                         "warning = Newton's method lost its way before anything slid: no factor is found, it is "
-                        "larger (another mesh, formulation, points_per_cell or dilatancy angle tells)"));
+                        "larger (another mesh, formulation, points_per_cell, a dilatancy angle, or a larger Poisson's ratio "
+                        "tells)"));
     PetscCall(RunDirLog(dir, "factor of safety > %.4g", (double)stable));
     PetscFunctionReturn(0);
   }

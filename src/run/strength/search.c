@@ -3,7 +3,8 @@
 /* below this share of the first factor nobody looks for one that stands */
 #define LEAST (1.0 / 1024)
 /* by what became of it: what fails in a step of this share of the tolerance has no equilibrium */
-static const PetscReal for_good[TRY_N] = {[TRY_SLIDES] = 1, [TRY_RUNS] = 0.25, [TRY_LOST] = 1.0 / 16};
+static const PetscReal for_good[TRY_N] = {
+  [TRY_SLIDES] = 1, [TRY_RUNS] = 0.25, [TRY_LOST] = 1.0 / 16, [TRY_FLOWS] = 1.0 / 16};
 /* what would be left before an end, over the shortest of these: not worth a step of its own */
 #define CRUMB 0.25
 

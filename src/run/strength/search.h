@@ -4,8 +4,9 @@
 
 /* What became of a try: Newton's method found an equilibrium that is near, one that is far away, none
  * while some node ran away, none at all. It may lose its way wherever points yield anew, and finds it
- * in a smaller step; so what is lost counts for less than what slides. */
-typedef enum { TRY_STANDS, TRY_SLIDES, TRY_RUNS, TRY_LOST, TRY_N } TryOutcome;
+ * in a smaller step; so what is lost counts for less than what slides. In pseudo-time something flows that has found
+ * none: in a smaller step that may not be so. */
+typedef enum { TRY_STANDS, TRY_SLIDES, TRY_RUNS, TRY_LOST, TRY_FLOWS, TRY_N } TryOutcome;
 
 typedef struct {
   PetscReal stable; /* the largest factor with an equilibrium; 0: nothing has yielded yet */

@@ -8,7 +8,7 @@
 #define LOW (1.0 / 3)   /* if it is no higher than that of all that is there */
 #define EASY 8          /* Newton's iterations after which the next step is larger */
 
-static const char *const outcome_words[TRY_N] = {"stands", "slides", "runs", "lost"};
+static const char *const outcome_words[TRY_N] = {"stands", "slides", "runs", "lost", "flows"};
 
 PetscErrorCode StrengthRunDestroy(StrengthRun *s)
 {
@@ -175,6 +175,7 @@ static PetscErrorCode TryOnce(const StrengthRun *s, Model *m, Try *try, StepRepo
   *counts = (PetscBool)(report->outcome != STEP_INTERRUPTED && report->outcome != STEP_POINTS_LOST);
   if (!*counts) PetscFunctionReturn(0);
   try->outcome = (PetscReal)(report->outcome == STEP_ACCEPTED ? TRY_STANDS
+                             : report->flows                  ? TRY_FLOWS
                              : report->leap[0]                ? TRY_SLIDES
                              : try->moved > m->strength.reach ? TRY_RUNS
                                                               : TRY_LOST);

@@ -60,7 +60,8 @@ typedef struct {
   /* Has strength fallen since the last step? What yields does so at the first guess already, and the first direction
    * is not an elastic one, but may go as far as any (docs/theory.md, "Factor of safety"). */
   PetscBool weaker;
-  PetscBool grips; /* does the first guess go along with walls, whatever friction bears? */
+  PetscReal enough; /* a residual that is small enough whatever the case asks for, N; 0: none is */
+  PetscBool grips;  /* does the first guess go along with walls, whatever friction bears? */
   /* Do points see more nodes than those of a cell? Then a tangent takes many times as long as a residual. */
   PetscBool wide;
   /* what the last digit of a coordinate makes of the force at a node, N */

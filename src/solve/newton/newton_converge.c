@@ -140,7 +140,8 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_FNORM_NAN;
   else if (!met && (n->asked || relative <= 1)) /* the load has still to do its work, or a wall moves on */
     *reason = n->asked ? SNES_DIVERGED_FUNCTION_COUNT : SNES_CONVERGED_ITERATING;
-  else if (relative <= spec->residual || fnorm <= spec->residual_absolute) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  else if (relative <= spec->residual || fnorm <= PetscMax(spec->residual_absolute, n->problem->enough))
+    *reason = SNES_CONVERGED_FNORM_RELATIVE;
   else if (still || (floored && (near || is_round_off(n, fnorm)))) *reason = SNES_CONVERGED_SNORM_RELATIVE;
   else if (n->asked) *reason = SNES_DIVERGED_FUNCTION_COUNT; /* no more than it wants to evaluate */
   else if (floored) *reason = SNES_DIVERGED_INNER;
