@@ -6,8 +6,8 @@
 
 static OutputField fields[OUTPUT_FIELDS_MOST + 1] = {
   {"displacement", "m", "displacement from the start", 3, PG},
-  {"velocity", "m/s", "velocity", 3, PG},
-  {"acceleration", "m/s2", "acceleration", 3, PG},
+  {"velocity", "m/s", "velocity; on the grid of mpm the mean of the points, by mass", 3, PG},
+  {"acceleration", "m/s2", "acceleration; on the grid of mpm the mean of the points, by mass", 3, PG},
   {"stress", "Pa", "Cauchy stress, tension positive: xx yy zz xy yz zx", 6, PG},
   {"pressure", "Pa",
    "minus a third of the trace of the stress, p, compression positive; on the grid the mixed unknown, if there is one",

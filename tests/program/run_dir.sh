@@ -1,5 +1,6 @@
 #!/bin/sh
 # What a run leaves: every file that the guide promises, readable by others.
+source=$(cd "$(dirname "$0")/../.." && pwd)
 . "$(dirname "$0")/library.sh"
 block | sed 's/end: 0.4/end: 0.1/; s/every: 0.1/every: 0.02, history: {steps: 5}/' >block.yaml
 expect "run" 0 on_ranks 2 "$talus" run block.yaml --out run
@@ -82,4 +83,33 @@ says err.txt "there is no run directory 'nowhere'"
 expect "plot of nothing" 2 "$talus" plot nowhere
 says err.txt "there is no run directory 'nowhere'"
 
+
+# Nodes of a restored grid have the mean of their points' motion: what the mass matrix gives to those that points hardly
+# reach, beside the edges of a brick of two cells, is 1e19 m/s and more
+cat >edges.yaml <<'END'
+kinematics: 3d
+method: mpm
+analysis: {type: dynamic, end: 0.02, step: 0.01}
+grid: {box: {min: [-0.5, -0.5, -0.5], max: [1.5, 1.5, 1.5]}, size: 0.5}
+bodies: [{name: b, shape: {box: {min: [0, 0, 0], max: [1, 1, 1]}}, points_per_cell: 8, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e5, poisson: 0.3}}
+boundary: [{on: {z: 0}, fix: [x, y, z]}]
+loads: {gravity: [0, 0, -9.81]}
+output: {fields: [displacement, velocity, acceleration, mass], every: end}
+END
+for ranks in 1 2 3; do
+  expect "motion of nodes, $ranks" 0 on_ranks $ranks "$talus" run edges.yaml --out edges --force --quiet
+  python3 -c 'import h5py, numpy' 2>/dev/null || continue
+  PYTHONPATH="$source/python" python3 - >out.txt 2>&1 <<'END' || fail "$name: $(tail -n 1 out.txt)"
+import numpy, talus
+state = talus.Run("edges").states[-1]
+points, nodes = state.points, state.grid
+once = numpy.unique(nodes["position"], axis=0, return_index=True)[1] # those of several ranks are there more than once
+for field in "displacement", "velocity", "acceleration":
+    most = abs(points[field]).max()
+    assert 0.5 * most < abs(nodes[field]).max() < (1 + 1e-12) * most, (field, abs(nodes[field]).max(), most)
+    lost = abs((points["mass"].reshape(-1, 1) * points[field]).sum(0) - (nodes["mass"].reshape(-1, 1) * nodes[field])[once].sum(0)).max()
+    assert lost < 1e-12 * most * points["mass"].sum(), (field, lost)
+END
+done
 finish

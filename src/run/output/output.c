@@ -215,22 +215,22 @@ static PetscErrorCode WritePoints(Output *o, Model *m, PetscBool *ok, char reaso
   PetscFunctionReturn(0);
 }
 
-/* Displacement of nodes: their own where the mesh moves, the points' average where it does not. */
-static PetscErrorCode NodalDisplacement(const Output *o, const Model *m, PetscReal *u)
+/* Mean over the points that a node sees, by mass. What a restored grid took from them by the matrix of
+ * the balance is nothing to look at: nodes that they hardly reach may have any motion, 1e20 m/s of which
+ * no point sees anything. */
+static PetscErrorCode MeanByMass(const Model *m, int field, PetscReal *u)
 {
   const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
   const Support *w = m->space->support;
 
   PetscFunctionBeginUser;
-  const PetscReal *x0 = m->grid->cloud ? m->grid->cloud->x0 : m->drawn ? m->drawn : o->x0;
-  for (PetscInt i = 0; i < dofs; ++i) u[i] = m->method->restores_grid ? 0 : m->grid->x[i] - x0[i];
-  if (!m->method->restores_grid) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(u, dofs));
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
       for (PetscInt i = 0; i < nn * dim; ++i)
         u[node[i / dim] * dim + i % dim] +=
-          support_N(w, g, p)[i / dim] * m->points->real[POINT_MASS][p] * point_real(m->points, POINT_U, p)[i % dim];
+          support_N(w, g, p)[i / dim] * m->points->real[POINT_MASS][p] * point_real(m->points, field, p)[i % dim];
   }
   PetscCall(GridSumToOwners(m->grid, dim, u));
   PetscCall(GridToGhosts(m->grid, dim, u));
@@ -238,28 +238,49 @@ static PetscErrorCode NodalDisplacement(const Output *o, const Model *m, PetscRe
   PetscFunctionReturn(0);
 }
 
+/* The field of points that says how a node moves; -1: the name is of something else. */
+static int motion_field(const char *name)
+{
+  if (!strcmp(name, "displacement")) return POINT_U;
+  if (!strcmp(name, "velocity")) return POINT_V;
+  return strcmp(name, "acceleration") != 0 ? -1 : POINT_A;
+}
+
+/* Motion of nodes: their own where the mesh moves, the points' mean where it does not. */
+static PetscErrorCode NodalMotion(const Output *o, const Model *m, int field, PetscReal *data)
+{
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  const PetscReal *x0 = m->grid->cloud ? m->grid->cloud->x0 : m->drawn ? m->drawn : o->x0;
+  PetscReal *u;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(dofs, &u));
+  if (m->method->restores_grid) PetscCall(MeanByMass(m, field, u));
+  else if (field == POINT_U)
+    for (PetscInt i = 0; i < dofs; ++i) u[i] = m->grid->x[i] - x0[i];
+  else PetscCall(PetscArraycpy(u, field == POINT_V ? m->nodes->v : m->nodes->a, dofs));
+  widen(m->grid->n_nodes, m->dim, u, data);
+  PetscCall(PetscFree(u));
+  PetscFunctionReturn(0);
+}
+
 /* What nodes know by themselves; of all else they have the mean of the points. */
 static PetscErrorCode GridField(const Output *o, const Model *m, const OutputField *field, PetscReal **data)
 {
   const PetscInt n = m->grid->n_nodes;
+  const int motion = motion_field(field->name);
   PetscReal *u;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(count_numbers(n, field->components), data));
-  if (!strcmp(field->name, "velocity")) widen(n, m->dim, m->nodes->v, *data);
-  else if (!strcmp(field->name, "acceleration")) widen(n, m->dim, m->nodes->a, *data);
+  if (motion >= 0) PetscCall(NodalMotion(o, m, motion, *data));
   else if (!strcmp(field->name, "mass")) PetscCall(PetscArraycpy(*data, m->nodes->mass, n));
   else if (!strcmp(field->name, "pressure") && m->nodes->scaled_pressure)
     for (PetscInt i = 0; i < n; ++i) (*data)[i] = -m->nodes->pressure[i];
-  else if (strcmp(field->name, "displacement") != 0) {
+  else {
     PetscCall(PetscMalloc1(count_numbers(m->points->n, field->components), &u));
     PetscCall(OutputPointField(m, field, u));
     PetscCall(OutputNodalAverage(m, field->components, u, *data));
-    PetscCall(PetscFree(u));
-  } else {
-    PetscCall(PetscMalloc1(count_numbers(n, m->dim), &u));
-    PetscCall(NodalDisplacement(o, m, u));
-    widen(n, m->dim, u, *data);
     PetscCall(PetscFree(u));
   }
   PetscFunctionReturn(0);
