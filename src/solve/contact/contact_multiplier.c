@@ -317,7 +317,7 @@ PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt chan
   }
   PetscCall(MPIU_Allreduce(worst, of_all, 7, MPIU_REAL, MPIU_MAX, scene->grid->comm));
   const PetscReal all = PetscMax(of_all[0], of_all[4]);
-  const PetscBool slow = change > 0 && all > STALLS * s->worst, soft = of_all[1] > CLOSED * s->length;
+  const PetscBool slow = change > 0 && all > STALLS * s->worst, soft = of_all[1] > s->share.asked * CLOSED * s->length;
   const PetscBool stalls = slow && !soft && of_all[3] <= ALLOWED * s->length;
   const PetscBool stay = of_all[0] <= allowed(s, change, of_all[2], of_all[5], of_all[6], 1) &&
                          of_all[4] <= allowed(s, change, of_all[2], of_all[5], of_all[6], SLIPS);
