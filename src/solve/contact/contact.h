@@ -120,6 +120,7 @@ typedef struct Contact {
   PetscReal *turn; /* of bodies, dim of each: how N changes along the surface, 1/m */
   PetscInt n_slots, capacity_slots, *slot;
   PetscReal worst;  /* gap or slip when multipliers were last looked at, m */
+  PetscBool begins; /* then: was nothing in contact before the step, on any rank? */
   PetscReal near;   /* m: what is farther away cannot be reached in a step */
   PetscReal length; /* of a cell, m: scale of gaps */
   ContactShare share;

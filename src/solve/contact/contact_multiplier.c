@@ -262,12 +262,21 @@ static PetscInt tries(const Contact *s)
   return TRIES + (PetscInt)PetscCeilReal(PetscLogReal(1 / s->share.asked) / PetscLogReal(STIFFER));
 }
 
+/* Of gaps, while these are sought. Where nothing was in contact before pressures are small, in dynamics, and such a gap
+ * would take a hundredth of them: there it is a share of what they take away. */
+static PetscReal closed_by(const Contact *s, PetscInt change, PetscReal pressed)
+{
+  const PetscReal most = CLOSED * s->length;
+  if (!s->begins || !s->share.moves || s->share.yields || change >= tries(s)) return most;
+  return PetscMin(most, MOVING * pressed);
+}
+
 /* What may stay of gaps, or of slips, which `times` as much may; moved: against the wall, and at all; pressed: the gap
  * that the largest pressure takes away. */
 static PetscReal allowed(const Contact *s, PetscInt change, PetscReal moved, PetscReal travelled, PetscReal pressed,
                          PetscReal times)
 {
-  const PetscReal closed = CLOSED * s->length, asked = s->share.asked;
+  const PetscReal closed = closed_by(s, change, pressed), asked = s->share.asked;
   const PetscReal still = PetscMax(ROUND_OFF * s->length, PetscMin(STANDING * s->length, MOVING * pressed));
   PetscReal most = closed;
   if (s->share.flows) most = PetscMax(closed, times * PetscMin(MOVED * moved, FLOWING * s->length));
@@ -300,8 +309,8 @@ PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt chan
 {
   Contact *s = data;
   /* of gaps, and of slips of what does not rub; of what may be stiffened; motion; stalled_of; slips of what rubs;
-   * travel_of; what pressures take away */
-  PetscReal worst[7] = {0}, of_all[7];
+   * travel_of; what pressures take away; was any in contact? */
+  PetscReal worst[8] = {0}, of_all[8];
 
   PetscFunctionBeginUser;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
@@ -314,10 +323,12 @@ PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt chan
     worst[3] = PetscMax(worst[3], stalled_of(c, change, left));
     worst[5] = PetscMax(worst[5], travel_of(s, c, scene));
     worst[6] = PetscMax(worst[6], PetscAbsReal(c->now.pressure) / c->law.penalty);
+    worst[7] = PetscMax(worst[7], c->before != CONTACT_OPEN);
   }
-  PetscCall(MPIU_Allreduce(worst, of_all, 7, MPIU_REAL, MPIU_MAX, scene->grid->comm));
-  const PetscReal all = PetscMax(of_all[0], of_all[4]);
-  const PetscBool slow = change > 0 && all > STALLS * s->worst, soft = of_all[1] > s->share.asked * CLOSED * s->length;
+  PetscCall(MPIU_Allreduce(worst, of_all, 8, MPIU_REAL, MPIU_MAX, scene->grid->comm));
+  s->begins = of_all[7] == 0;
+  const PetscReal all = PetscMax(of_all[0], of_all[4]), closed = s->share.asked * closed_by(s, change, of_all[6]);
+  const PetscBool slow = change > 0 && all > STALLS * s->worst, soft = of_all[1] > closed;
   const PetscBool stalls = slow && !soft && of_all[3] <= ALLOWED * s->length;
   const PetscBool stay = of_all[0] <= allowed(s, change, of_all[2], of_all[5], of_all[6], 1) &&
                          of_all[4] <= allowed(s, change, of_all[2], of_all[5], of_all[6], SLIPS);
