@@ -300,9 +300,6 @@ PetscErrorCode CheckHeld(Model *model, Diag *diag);
 PetscErrorCode FindHeld(const Model *model, PetscInt *held);
 /* rests.c. Collective. A warning for each body whose weight nothing but friction along walls bears. */
 PetscErrorCode AdviseRests(const Model *model, Diag *diag);
-/* Collective. of (n_nodes, 0 on entry): of the bodies that share nodes, directly or through others, the first one's
- * number from 1 on, where they touch the node; meet: or that touch at interfaces. */
-PetscErrorCode JoinedBodies(const Model *model, PetscBool meet, PetscReal *of);
 /* Loads out of balance, of the forces that there are: more than Newton's method leaves. */
 #define UNHELD_BALANCE 1e-6
 /* Likewise, of pressures on a surface whose parts go with points, and come to overlap and gape by that. */

@@ -104,6 +104,13 @@ for a in 17 45; do
   says err.txt "nothing holds 'lo' and what it touches along a line that leans"
 done
 
+# Pressed between two smooth planes, and a third one goes away along them: said at the end.
+expect "a stop that goes" 0 "$talus" run slides.yaml --out o --force --quiet --set 'grid.parameters={a: 30}' --set analysis.steps=4 --set 'boundary=[]' --set 'loads={}' --set 'walls=[
+  {name: floor, shape: {half-space: {point: [0, 0], normal: [-0.5, 0.8660254037844386]}}},
+  {name: press, shape: {half-space: {point: [-0.5, 0.8660254037844386], normal: [0.5, -0.8660254037844386]}}, motion: [{displacement: {x: 0.005, y: -0.00866}}]},
+  {name: stop, shape: {half-space: {point: [0, 0], normal: [0.8660254037844386, 0.5]}}, motion: [{displacement: {x: -0.0866, y: -0.05}}]}]'
+says err.txt "nothing holds 'b' along a line that leans any more"
+
 # A disk that is held along its normals all round is free to turn.
 cat >disk.geo <<'END'
 Point(1) = {0, 0, 0, 0.3}; Point(2) = {1, 0, 0, 0.3}; Point(3) = {0, 1, 0, 0.3}; Point(4) = {-1, 0, 0, 0.3}; Point(5) = {0, -1, 0, 0.3};

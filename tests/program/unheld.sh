@@ -114,4 +114,49 @@ expect "in flat cells" 0 "$talus" run ball.yaml --out o --force $flat
 awk -F, 'END { exit !(($3 / -1e3 - 1) ^ 2 < 1e-6) }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"
 expect "a pressure that varies may push" 2 "$talus" run ball.yaml --out o --force $flat --set 'loads.pressures[0].factor="1"'
 says err.txt "N are out of balance"
+
+bears() {
+  awk -F, -v row="$1" -v force="$2" 'NR > 1 { f = $row } END { exit !((f / force - 1) ^ 2 < 1e-12) }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"
+}
+
+# A body on a wall with mass is held by what holds that: the body below, or what guides the wall.
+cat >plate.yaml <<'EOF'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 2}
+grid: {box: {min: [-0.5, -0.25], max: [1.5, 2]}, size: 0.25}
+bodies:
+  - {name: below, shape: {box: {min: [0, 0], max: [1, 0.5]}}, material: e}
+  - {name: above, shape: {box: {min: [0, 0.75], max: [1, 1.25]}}, material: e}
+materials: {e: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{name: foot, on: {y: 0}, fix: [x, y]}]
+walls: [{name: plate, shape: {box: {min: [0, 0.5], max: [1, 0.75]}}, contact: bonded, mass: {mass: 100}}]
+loads: {gravity: [0, -10]}
+measures: {ry: {reaction: y, of: {boundary: foot}}}
+output: {every: end}
+EOF
+for way in "fem 1" "fem 2" "fem 3" "mpm 1" "mpm 2" "gmm 1"; do
+  set -- $way
+  for law in "contact: bonded" "friction: 0.3"; do
+    expect "on a plate with mass, $way, $law" 0 on_ranks $2 "$talus" run plate.yaml --out o --force --quiet --set method=$1 \
+      --set "walls[0]={name: plate, shape: {box: {min: [0, 0.5], max: [1, 0.75]}}, $law, mass: {mass: 100}}"
+    lacks err.txt "nothing holds"
+    bears 3 11000
+  done
+done
+for ranks in 1 3; do
+  expect "without a foot" 2 on_ranks $ranks "$talus" run plate.yaml --out none --quiet --set 'boundary=[]' --set 'measures={}'
+  says err.txt "nothing holds 'below' and what it touches in x and y: a static analysis has no answer"
+  lacks err.txt "friction"
+done
+expect "a plate that is free to fall" 2 "$talus" run plate.yaml --out none --quiet --set 'boundary=[]' --set 'measures={}' --set 'walls[0].mass.free=[y]'
+says err.txt "nothing holds 'below' and what it touches in y:"
+expect "a plate that is free to turn" 0 "$talus" run plate.yaml --out o --force --quiet --set 'boundary=[]' --set 'measures={f: {wall_force: y, of: {wall: plate}}}' --set 'walls[0].mass.free=[rotation]'
+bears 3 10000
+
+# Two that rub on each other slide together on a smooth third.
+expect "two on a third" 2 "$talus" run plate.yaml --out none --quiet --set 'walls=[]' \
+  --set 'bodies[1].shape.box={min: [0, 0.5], max: [1, 1]}' --set 'bodies[2]={name: top, shape: {box: {min: [0, 1], max: [1, 1.5]}}, material: e}' \
+  --set 'interfaces=[{name: i, between: [above, below]}, {name: j, between: [top, above], friction: 0.4}]'
+says err.txt "nothing holds 'above' and what it touches in x: a static analysis has no answer"
 finish

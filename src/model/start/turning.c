@@ -1,6 +1,6 @@
 /* Statics of bodies in smooth walls, or held along normals of sides, that are round about one axis: nothing holds the
- * turn about it, while every direction is held (advice/held.c). What is known of motions and holds is that of unheld.c (docs/theory.md,
- * section 60). */
+ * turn about it, while every direction is held (advice/held.c). What is known of motions and holds is that of unheld.c
+ * (docs/theory.md, section 60). */
 #include "model/start/unheld_private.h"
 
 /* As much of all loads at the size of the body neither pushes it nor brings it back. */
@@ -128,6 +128,6 @@ PetscErrorCode UnheldTurning(Model *m, Diag *diag)
     if (!wall_comes(m->contact->walls, k, m->time)) PetscFunctionReturn(0);
   PetscCall(NodalForcesBegin(&m->forces, &scene));
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, m->nodes->external));
-  PetscCall(UnheldEach(m, PETSC_FALSE, diag, RefuseTurning));
+  PetscCall(UnheldEach(m, MEET_NONE, diag, RefuseTurning));
   PetscFunctionReturn(0);
 }

@@ -168,15 +168,32 @@ void unheld_add_place(const Model *m, const UnheldGroup *g, const PetscReal *x, 
 static PetscBool leans_on(const Contact *s, const UnheldGroup *g, const ContactPoint *c)
 {
   const PetscBool own = unheld_is_of(g, s->node[c->first]);
-  if (!contact_touched(c)) return PETSC_FALSE;
+  if (!contact_bears(s, c)) return PETSC_FALSE;
   return c->wall < s->n_walls ? own : (PetscBool)(own != unheld_is_of(g, s->node[c->first + c->own]));
+}
+
+/* Of a wall with mass that moves with the group: along, and about, what it is not free to. */
+static void add_guides(const Model *m, const UnheldGroup *g, const RigidWall *wall, PetscReal *sum)
+{
+  PetscReal centre[3];
+  for (PetscInt d = 0; d < 3; ++d) centre[d] = wall->body.centre[d] + wall->now.moved[d];
+  for (PetscInt d = 0; d < m->dim; ++d) {
+    const PetscReal axis[3] = {d == 0, d == 1, d == 2};
+    if (!wall->free[d]) unheld_add_place(m, g, centre, axis, PETSC_FALSE, sum);
+  }
+  for (PetscInt k = m->dim; k < g->n; ++k)
+    if (!wall->free[m->dim == 3 ? k : RIGID - 1]) sum[k * (g->n + 1)] += 1;
 }
 
 static void add_contact(const Model *m, const UnheldGroup *g, PetscReal *sum)
 {
   const Contact *s = m->contact;
-  for (const ContactPoint *c = s ? s->point : NULL; s && c < s->point + s->n; ++c)
-    if (leans_on(s, g, c)) unheld_add_place(m, g, c->x, c->normal, c->law.kind != CONTACT_FRICTIONLESS, sum);
+  for (const ContactPoint *c = s ? s->point : NULL; s && c < s->point + s->n; ++c) {
+    const RigidWall *wall = meet_as_one(g->meet, c) ? contact_rigid(s, c) : NULL;
+    if (!leans_on(s, g, c)) continue;
+    if (wall) add_guides(m, g, wall, sum);
+    else unheld_add_place(m, g, c->x, c->normal, c->law.kind != CONTACT_FRICTIONLESS, sum);
+  }
 }
 
 /* Of what other forces hold, as springs do: along the axes. */
@@ -299,7 +316,7 @@ static PetscErrorCode HoldOne(Model *m, UnheldGroup *g, Which which)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode UnheldEach(Model *m, PetscBool meet, Diag *diag,
+PetscErrorCode UnheldEach(Model *m, MeetKind meet, Diag *diag,
                           PetscErrorCode (*visit)(Model *m, UnheldGroup *g, Diag *diag))
 {
   PetscReal *of;
@@ -414,7 +431,7 @@ PetscErrorCode UnheldCheck(Model *m, Diag *diag)
   PetscCall(PetscMalloc2(RIGID * m->c->n_bodies, &m->unheld.dof, RIGID * m->c->n_bodies, &m->unheld.turns));
   PetscCall(NodalForcesBegin(&m->forces, &scene));
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, m->nodes->external));
-  PetscCall(UnheldEach(m, PETSC_FALSE, diag, CheckGroup));
+  PetscCall(UnheldEach(m, MEET_NONE, diag, CheckGroup));
   PetscFunctionReturn(0);
 }
 
@@ -440,6 +457,6 @@ PetscErrorCode UnheldHold(Model *m)
   PetscFunctionBeginUser;
   m->unheld.n = m->unheld.turning = 0;
   m->unheld.size = 0;
-  if (m->c->analysis.unheld == UNHELD_HOLD) PetscCall(UnheldEach(m, PETSC_FALSE, NULL, HoldGroup));
+  if (m->c->analysis.unheld == UNHELD_HOLD) PetscCall(UnheldEach(m, MEET_NONE, NULL, HoldGroup));
   PetscFunctionReturn(0);
 }

@@ -4,11 +4,23 @@
 
 #define RIGID 6
 
+/* Which of those that touch at interfaces, or both touch a wall with mass, move as one? None, those that rub or are
+ * bonded, all. */
+typedef enum { MEET_NONE, MEET_ROUGH, MEET_ALL } MeetKind;
+/* Collective. of (n_nodes, 0 on entry): of the bodies that share nodes, directly or through others, or that move as one
+ * at what they touch, the first one's number from 1 on, where they touch the node. */
+PetscErrorCode JoinedBodies(const Model *model, MeetKind meet, PetscReal *of);
+/* Does the contact point make both sides one? */
+static inline PetscBool meet_as_one(MeetKind meet, const ContactPoint *c)
+{
+  return (PetscBool)(meet == MEET_ALL || (meet == MEET_ROUGH && c->law.kind != CONTACT_FRICTIONLESS));
+}
+
 /* Bodies that move as one, since they touch the same nodes, and the rigid motions that are left to them. */
 typedef struct {
   PetscInt body;                   /* the first of them */
   const PetscReal *of;             /* n_nodes: body + 1 where they touch the node */
-  PetscBool meet;                  /* do those that touch at interfaces move as one, too? */
+  MeetKind meet;                   /* which of those that touch move as one, too? */
   PetscReal centre[3], size, mass; /* m; half of their diagonal; the largest of a node, kg */
   PetscReal plane[3];              /* nodes held along axis d stand at x_d = plane, if they can, m */
   PetscBool has_plane[3];
@@ -30,9 +42,9 @@ void unheld_add_place(const Model *model, const UnheldGroup *g, const PetscReal 
                       PetscBool rubs, PetscReal *sum);
 /* Collective. What such a sum, of this rank, holds is not free. */
 PetscErrorCode UnheldTake(const Model *model, UnheldGroup *g, PetscReal *sum);
-/* Collective. Calls back for each group that has a motion free, in the order of their bodies. meet: bodies that touch
- * at interfaces move as one, too; else each is to the other what a wall is. */
-PetscErrorCode UnheldEach(Model *model, PetscBool meet, Diag *diag,
+/* Collective. Calls back for each group that has a motion free, in the order of their bodies. meet: which of those that
+ * touch move as one, too; each is to others what a wall is. */
+PetscErrorCode UnheldEach(Model *model, MeetKind meet, Diag *diag,
                           PetscErrorCode (*visit)(Model *model, UnheldGroup *g, Diag *diag));
 /* Of its free motions those are left that do not turn it. */
 void unheld_keep_from_turning(const Model *model, UnheldGroup *g);

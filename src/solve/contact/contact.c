@@ -82,22 +82,24 @@ static PetscErrorCode Begin(void *data, const NodalScene *scene)
   PetscFunctionReturn(0);
 }
 
-static PetscReal last_of(const ContactPoint *c)
+PetscErrorCode ContactIsOver(Contact *s, MPI_Comm comm)
 {
-  return PetscSqrtReal(PetscSqr(c->last[0]) + PetscSqr(c->last[1]) + PetscSqr(c->last[2]));
+  PetscReal largest = 0;
+
+  PetscFunctionBeginUser;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) largest = PetscMax(largest, contact_last(c));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, comm));
+  s->least = NEXT_TO_NOTHING * largest;
+  PetscFunctionReturn(0);
 }
 
-/* What touches a wall cannot leave through it, nor along it if it rubs. A wall that only pushes may turn out to hold
- * one way alone: whoever asks looks again after the run (ModelWarnLoose), when what touches and bears next to nothing
- * has been left behind, but for round-off; before, what touches may still come to bear. */
+/* What touches a wall cannot leave through it, nor along it if it rubs, as if the wall stood where it is. */
 static void hold(const void *data, const NodalScene *scene, unsigned char *held)
 {
   const Contact *s = data;
-  PetscReal largest = 0;
   (void)scene;
-  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) largest = PetscMax(largest, last_of(c));
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (!contact_touched(c) || contact_rigid(s, c) || (s->over && last_of(c) < NEXT_TO_NOTHING * largest)) continue;
+    if (!contact_bears(s, c)) continue;
     const PetscBool slides = c->law.kind == CONTACT_FRICTIONLESS || (s->slips && c->law.kind == CONTACT_FRICTION);
     for (PetscInt e = c->first; e < c->first + c->n; ++e)
       for (PetscInt d = 0; d < s->dim; ++d)

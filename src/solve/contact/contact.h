@@ -126,7 +126,7 @@ typedef struct Contact {
   ContactShare share;
   PetscBool adheres; /* does anything, in implicit steps and statics? */
   PetscBool grips;   /* for a first guess: what was in contact goes along with its wall */
-  PetscBool over;    /* is the run over? What bears nothing holds nothing then */
+  PetscReal least;   /* the run is over: what bears less holds nothing, N */
   PetscBool slips;   /* is it asked what friction does not hold? */
   /* n_partners x n_bodies: of friction and adhesion where that body meets this partner; 0: it does not slide */
   PetscReal *divisor;
@@ -284,6 +284,19 @@ static inline PetscBool contact_touched(const ContactPoint *c)
 {
   return (PetscBool)(c->touches || c->before != CONTACT_OPEN);
 }
+static inline PetscReal contact_last(const ContactPoint *c)
+{
+  return PetscSqrtReal(PetscSqr(c->last[0]) + PetscSqr(c->last[1]) + PetscSqr(c->last[2]));
+}
+/* Does it hold? A wall that only pushes may turn out to hold one way alone: whoever asks looks again after the run
+ * (ModelWarnLoose), when what touches and bears next to nothing has been left behind, but for round-off; before, what
+ * touches may still come to bear. */
+static inline PetscBool contact_bears(const Contact *contact, const ContactPoint *c)
+{
+  return (PetscBool)(contact_touched(c) && contact_last(c) >= contact->least);
+}
+/* Collective. The run is over, and the contact points are those that it ends with. */
+PetscErrorCode ContactIsOver(Contact *contact, MPI_Comm comm);
 /* What its owner keeps of it. */
 static inline PetscReal *contact_kept_of(const Contact *contact, const Points *points, const ContactPoint *c)
 {

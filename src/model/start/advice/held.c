@@ -18,23 +18,33 @@ PetscErrorCode BodyTouches(const Model *m, PetscInt body, PetscReal *touched)
   PetscFunctionReturn(0);
 }
 
-/* joined (bodies x bodies): do both touch one node? held (bodies x dim): is a node of the body held
- * in this direction, by a prescribed motion or by a nodal force? */
+/* holds (n_nodes x dim): is the node held in this direction, by a prescribed motion or by a nodal force? */
+static PetscErrorCode NodesHeld(const Model *m, unsigned char **holds)
+{
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  const PetscInt n = m->grid->n_nodes * m->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(n, holds));
+  PetscCall(NodalForcesBegin(&m->forces, &scene));
+  for (PetscInt k = 0; k < n; ++k) (*holds)[k] = (unsigned char)boundary_holds(m->boundary, k / m->dim, k % m->dim);
+  nodal_forces_hold(&m->forces, &scene, *holds);
+  PetscFunctionReturn(0);
+}
+
+/* joined (bodies x bodies): do both touch one node? held (bodies x dim): is a node of the body held in this
+ * direction? */
 static PetscErrorCode Touches(const Model *m, PetscInt *joined, PetscInt *held)
 {
   const PetscInt n = m->c->n_bodies, nodes = m->grid->n_nodes;
   PetscReal *touched;
-  PetscInt *before;     /* n_nodes: the last body that touches it, from 1 on */
-  unsigned char *holds; /* n_nodes x dim */
-  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  PetscInt *before; /* n_nodes: the last body that touches it, from 1 on */
+  unsigned char *holds;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(nodes, &touched));
   PetscCall(PetscCalloc1(nodes, &before));
-  PetscCall(PetscCalloc1(nodes * m->dim, &holds));
-  PetscCall(NodalForcesBegin(&m->forces, &scene));
-  for (PetscInt k = 0; k < nodes * m->dim; ++k) holds[k] |= boundary_holds(m->boundary, k / m->dim, k % m->dim);
-  nodal_forces_hold(&m->forces, &scene, holds);
+  PetscCall(NodesHeld(m, &holds));
   for (PetscInt b = 0; b < n; ++b) {
     PetscCall(BodyTouches(m, b, touched));
     for (PetscInt node = 0; node < nodes; ++node) {
@@ -67,24 +77,53 @@ static void spread(PetscInt n, PetscInt dim, const PetscInt *joined, PetscInt *h
   }
 }
 
-/* Those that touch at interfaces are joined. */
-static PetscErrorCode JoinMeeting(const Model *m, PetscInt *joined)
+static void join(PetscInt n, PetscInt a, PetscInt b, PetscInt *joined) { joined[a * n + b] = joined[b * n + a] = 1; }
+
+/* Of walls with mass: those that touch the same one are joined. */
+static PetscErrorCode JoinAtRigid(const Model *m, MeetKind meet, PetscInt *joined)
+{
+  const PetscInt n = m->c->n_bodies;
+  const Contact *s = m->contact;
+  PetscReal *touched;
+  PetscInt *at; /* walls x bodies */
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m->grid->n_nodes, &touched));
+  PetscCall(PetscCalloc1(m->c->n_walls * n, &at));
+  for (PetscInt b = 0; b < n; ++b) {
+    PetscCall(BodyTouches(m, b, touched));
+    for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
+      if (contact_rigid(s, c) && meet_as_one(meet, c) && contact_bears(s, c) && touched[s->node[c->first]] != 0)
+        at[c->wall * n + b] = 1;
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, at, (PetscMPIInt)(m->c->n_walls * n), MPIU_INT, MPI_MAX, m->comm));
+  for (PetscInt i = 0; i < m->c->n_walls * n; ++i)
+    for (PetscInt b = 0; at[i] && b < n; ++b)
+      if (at[i / n * n + b]) join(n, i % n, b, joined);
+  PetscCall(PetscFree(touched));
+  PetscCall(PetscFree(at));
+  PetscFunctionReturn(0);
+}
+
+/* Those that move as one at interfaces, or with a wall that has mass, are joined. */
+static PetscErrorCode JoinMeeting(const Model *m, MeetKind meet, PetscInt *joined)
 {
   const PetscInt n = m->c->n_bodies;
   const Contact *s = m->contact;
 
   PetscFunctionBeginUser;
-  for (const ContactPoint *c = s ? s->point : NULL; s && c < s->point + s->n; ++c) {
-    if (c->wall < s->n_walls || !contact_touched(c)) continue;
+  if (!s || meet == MEET_NONE) PetscFunctionReturn(0);
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    if (c->wall < s->n_walls || !meet_as_one(meet, c) || !contact_bears(s, c)) continue;
     char *const *between = m->c->interfaces[c->wall - s->n_walls].between;
-    const PetscInt a = case_body(m->c, between[0]), b = case_body(m->c, between[1]);
-    joined[a * n + b] = joined[b * n + a] = 1;
+    join(n, case_body(m->c, between[0]), case_body(m->c, between[1]), joined);
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, joined, (PetscMPIInt)(n * n), MPIU_INT, MPI_MAX, m->comm));
+  if (s->n_rigid) PetscCall(JoinAtRigid(m, meet, joined));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode JoinedBodies(const Model *m, PetscBool meet, PetscReal *of)
+PetscErrorCode JoinedBodies(const Model *m, MeetKind meet, PetscReal *of)
 {
   const PetscInt n = m->c->n_bodies, nodes = m->grid->n_nodes;
   PetscInt *joined, *held, *first;
@@ -93,7 +132,7 @@ PetscErrorCode JoinedBodies(const Model *m, PetscBool meet, PetscReal *of)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc4(n * n, &joined, n * m->dim, &held, n, &first, nodes, &touched));
   PetscCall(Touches(m, joined, held));
-  if (meet) PetscCall(JoinMeeting(m, joined));
+  PetscCall(JoinMeeting(m, meet, joined));
   for (PetscInt b = 0; b < n; ++b) first[b] = b;
   for (PetscInt pass = 0; pass < n; ++pass)
     for (PetscInt k = 0; k < n * n; ++k)
@@ -132,88 +171,98 @@ PetscErrorCode FindHeld(const Model *m, PetscInt *held)
   PetscFunctionReturn(0);
 }
 
-/* How a body is held whose loads are in balance. What rubs already does not touch it yet, as where a round body meets a
- * wall in one point. */
+/* How a body is held whose loads are in balance. What rubs or sticks already does not touch it yet, as where a round
+ * body meets a wall in one point. */
 static const char *balance_hint(const Model *m)
 {
-  PetscBool rubs = case_has_contact(m->c, CONTACT_STICK);
+  PetscBool rubs = (PetscBool)(case_has_contact(m->c, CONTACT_STICK) || case_has_contact(m->c, CONTACT_BONDED));
   for (PetscInt k = 0; k < m->c->n_walls; ++k) rubs |= m->c->walls[k].friction > 0;
   for (PetscInt k = 0; k < m->c->n_interfaces; ++k) rubs |= m->c->interfaces[k].friction > 0;
-  if (rubs) return "let it reach a few hundredths of a cell into what is to hold it by friction";
+  if (rubs) return "let it reach a few hundredths of a cell into what is to hold it";
   return m->c->n_interfaces || (m->contact && m->contact->n_rigid) ? "friction: 0.01 on what it touches"
                                                                    : "analysis: {unheld: hold}";
 }
 
-/* What nothing holds: a mistake at the start, a warning at the end. */
-static PetscErrorCode TellLoose(const Model *m, PetscBool ends, Diag *diag)
+/* When it is asked what nothing holds: before the first step, or when the run is over. */
+typedef enum { START, END } When;
+
+/* others: what goes with it, so that nothing between them holds it. */
+static void tell(const Model *m, PetscInt body, const char *others, const char *which, When when, Diag *diag)
+{
+  char path[64];
+  snprintf(path, sizeof path, "bodies[%d]", (int)body);
+  if (when == END) {
+    diag_warning(diag, path,
+                 "nothing holds '%s'%s %s any more: it has left the walls or bodies that it was pressed against, and "
+                 "where a static analysis has put it means nothing",
+                 m->c->bodies[body].name, others, which);
+    diag_hint(diag,
+              "walls push and do not pull: fix a boundary that way, put a wall on the other side, or let it "
+              "stick");
+    return;
+  }
+  diag_error(diag, path, "nothing holds '%s'%s %s: a static analysis has no answer", m->c->bodies[body].name, others,
+             which);
+  diag_hint(diag, "fix a boundary that the body touches that way, or let it move: analysis: {type: dynamic}%s%s",
+            others[0] ? "" : "; if its loads are in balance: ", others[0] ? "" : balance_hint(m));
+}
+
+/* Directions in which nothing touches it. */
+static PetscErrorCode TellLoose(const Model *m, When when, PetscBool *told, Diag *diag)
 {
   const PetscInt n = m->c->n_bodies, dim = m->dim;
   PetscInt *held;
-  char path[64], directions[32];
+  char which[40] = "in ";
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n * dim, &held));
   PetscCall(FindHeld(m, held));
   for (PetscInt k = 0; k < n * dim; ++k) held[k] |= m->unheld.along[k % dim];
   for (PetscInt b = 0; b < n; ++b) {
-    const char *name = m->c->bodies[b].name;
-    name_directions(dim, held + b * dim, directions);
-    if (!directions[0] || m->c->bodies[b].absent) continue;
-    snprintf(path, sizeof path, "bodies[%d]", (int)b);
-    if (ends) {
-      diag_warning(
-        diag, path,
-        "nothing holds '%s' in %s any more: it has left the walls or bodies that it was pressed against, and "
-        "where a static analysis has put it means nothing",
-        name, directions);
-      diag_hint(diag, "walls push and do not pull: fix a boundary in %s, put a wall on the other side, or let it stick",
-                directions);
-    } else {
-      diag_error(diag, path, "nothing holds '%s' in %s: a static analysis has no answer", name, directions);
-      diag_hint(diag,
-                "fix a boundary that the body touches in %s, or let it move: analysis: {type: dynamic}; if its loads "
-                "are in balance: %s",
-                directions, balance_hint(m));
-    }
+    name_directions(dim, held + b * dim, which + 3);
+    if (!which[3] || m->c->bodies[b].absent) continue;
+    tell(m, b, "", which, when, diag);
+    *told = PETSC_TRUE;
   }
   PetscCall(PetscFree(held));
   PetscFunctionReturn(0);
 }
 
-/* A way that is free although something leans towards each axis, as between planes that lie alike. */
-static PetscErrorCode RefuseLine(Model *m, UnheldGroup *g, Diag *diag)
+/* Ways that are free although something leans towards each axis, as between planes that lie alike. */
+static PetscErrorCode TellLine(Model *m, UnheldGroup *g, When when, Diag *diag)
 {
   UnheldGroup line = *g;
-  char path[64], text[64];
+  char which[64];
 
   PetscFunctionBeginUser;
   unheld_keep_from_turning(m, &line);
   if (!line.n_free) PetscFunctionReturn(0);
-  unheld_name_free(m, &line, text);
-  snprintf(path, sizeof path, "bodies[%d]", (int)g->body);
-  diag_error(diag, path, "nothing holds '%s'%s %s: a static analysis has no answer", m->c->bodies[g->body].name,
-             g->meet ? " and what it touches" : "", text);
-  diag_hint(diag,
-            "fix a boundary that the body touches that way, or let it move: analysis: {type: dynamic}; if its loads "
-            "are in balance: %s",
-            balance_hint(m));
+  unheld_name_free(m, &line, which);
+  tell(m, g->body, g->meet == MEET_NONE ? "" : " and what it touches", which, when, diag);
   PetscFunctionReturn(0);
 }
 
-/* Each body by itself, others standing where they are; then all that touch at interfaces as one. */
-static PetscErrorCode TellLines(Model *m, Diag *diag)
+static PetscErrorCode RefuseLine(Model *m, UnheldGroup *g, Diag *diag) { return TellLine(m, g, START, diag); }
+
+static PetscErrorCode WarnOfLine(Model *m, UnheldGroup *g, Diag *diag) { return TellLine(m, g, END, diag); }
+
+/* Each body by itself, others standing where they are; then those as one that rub on each other or are bonded; then all
+ * that touch. */
+static PetscErrorCode TellLines(Model *m, When when, Diag *diag)
 {
-  const PetscInt before = diag_errors(diag);
+  const PetscInt before = diag_errors(diag) + diag_warnings(diag);
+  const MeetKind most = m->contact && (m->c->n_interfaces || m->contact->n_rigid) ? MEET_ALL : MEET_NONE;
 
   PetscFunctionBeginUser;
-  PetscCall(UnheldEach(m, PETSC_FALSE, diag, RefuseLine));
-  if (m->c->n_interfaces && diag_errors(diag) == before) PetscCall(UnheldEach(m, PETSC_TRUE, diag, RefuseLine));
+  for (MeetKind meet = MEET_NONE; meet <= most && diag_errors(diag) + diag_warnings(diag) == before; ++meet)
+    PetscCall(UnheldEach(m, meet, diag, when == END ? WarnOfLine : RefuseLine));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode CheckHeld(Model *m, Diag *diag)
 {
   const PetscInt before = diag_errors(diag);
+  PetscBool told = PETSC_FALSE;
   PetscInt points;
 
   PetscFunctionBeginUser;
@@ -223,8 +272,8 @@ PetscErrorCode CheckHeld(Model *m, Diag *diag)
   }
   PetscCall(ModelCountPoints(m, &points));
   if ((m->scheme->inertia && !case_equilibrates(m->c)) || !points) PetscFunctionReturn(0);
-  PetscCall(TellLoose(m, PETSC_FALSE, diag));
-  if (diag_errors(diag) == before) PetscCall(TellLines(m, diag));
+  PetscCall(TellLoose(m, START, &told, diag));
+  if (!told) PetscCall(TellLines(m, START, diag));
   if (diag_errors(diag) == before) PetscCall(UnheldTurning(m, diag));
   PetscCall(AdviseRests(m, diag));
   PetscFunctionReturn(0);
@@ -232,11 +281,17 @@ PetscErrorCode CheckHeld(Model *m, Diag *diag)
 
 PetscErrorCode ModelWarnLoose(Model *m, Diag *diag)
 {
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  const PetscBool holds = (PetscBool)(m->c->analysis.unheld == UNHELD_HOLD);
+  PetscBool told = PETSC_FALSE;
+
   PetscFunctionBeginUser;
   if (!m->contact || m->c->analysis.type != ANALYSIS_STATIC || !m->step) PetscFunctionReturn(0);
   PetscCall(ModelInitialise(m));
-  m->contact->over = PETSC_TRUE;
-  PetscCall(TellLoose(m, PETSC_TRUE, diag));
-  m->contact->over = PETSC_FALSE;
+  PetscCall(NodalForcesBegin(&m->forces, &scene));
+  PetscCall(ContactIsOver(m->contact, m->comm));
+  PetscCall(TellLoose(m, END, &told, diag));
+  if (!told && !holds) PetscCall(TellLines(m, END, diag));
+  m->contact->least = 0;
   PetscFunctionReturn(0);
 }
