@@ -333,7 +333,8 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(AdviseBeside(m, diag));
   if (!m->time) PetscCall(AdviseHangs(m, diag));
   PetscCall(AdvisePassing(m, diag));
-  if (!m->time) PetscCall(CheckHeld(m, diag)); /* later bodies and walls are elsewhere: ModelTake */
+  /* later bodies and walls are elsewhere: ModelTake */
+  if (!m->time) PetscCall(CheckHeld(m, (PetscBool)!case_goes_on(m->c), diag));
   if (m->scheme->inertia) PetscCall(InitialAcceleration(m));
   else PetscCall(InitialReactions(m));
   PetscCall(EnergyStart(m));

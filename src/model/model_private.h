@@ -293,20 +293,22 @@ PetscErrorCode ModelToCloud(Model *model);
 /* Collective. Newton converged: unless the step is connected with the last state that is taken
  * back. */
 PetscErrorCode JudgeStep(const Model *model, StepReport *report);
-/* Collective. In statics each body must be held in all directions, by itself or by others that it
- * touches. */
-PetscErrorCode CheckHeld(Model *model, Diag *diag);
-/* Collective. Of each body the directions in which something holds it (n_bodies x dim, zero on entry). */
-PetscErrorCode FindHeld(const Model *model, PetscInt *held);
+/* Collective. In statics each body must be held in all directions, by itself or by others that it touches. arrived: do
+ * bodies stand where the case has them when it begins? Of a stage to come, and of a case that goes on from another run,
+ * only what could not be held wherever they are is a mistake yet. */
+PetscErrorCode CheckHeld(Model *model, PetscBool arrived, Diag *diag);
+/* Collective. Of each body the directions in which something holds it, or (not arrived) may come to hold it (n_bodies x
+ * dim, zero on entry). */
+PetscErrorCode FindHeld(const Model *model, PetscBool arrived, PetscInt *held);
 /* rests.c. Collective. A warning for each body whose weight nothing but friction along walls bears. */
 PetscErrorCode AdviseRests(const Model *model, Diag *diag);
 /* Loads out of balance, of the forces that there are: more than Newton's method leaves. */
 #define UNHELD_BALANCE 1e-6
 /* Likewise, of pressures on a surface whose parts go with points, and come to overlap and gape by that. */
 PetscReal unheld_open_surface(const Model *model);
-/* start/unheld.c. Collective. analysis.unheld: hold: what nothing holds is told, and a mistake where the loads of the
- * first step push it. */
-PetscErrorCode UnheldCheck(Model *model, Diag *diag);
+/* start/unheld.c. Collective. analysis.unheld: hold: once bodies have arrived (see CheckHeld) what nothing holds is
+ * told, and a mistake where the loads of the first step push it. */
+PetscErrorCode UnheldCheck(Model *model, PetscBool arrived, Diag *diag);
 /* Collective. Otherwise: a mistake where nothing keeps a body from turning, in walls or sides that are smooth and round,
  * and loads leave it as it lies. */
 PetscErrorCode UnheldTurning(Model *model, Diag *diag);

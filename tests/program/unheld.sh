@@ -115,9 +115,53 @@ awk -F, 'END { exit !(($3 / -1e3 - 1) ^ 2 < 1e-6) }' o/history.csv || fail "$nam
 expect "a pressure that varies may push" 2 "$talus" run ball.yaml --out o --force $flat --set 'loads.pressures[0].factor="1"'
 says err.txt "N are out of balance"
 
+# What comes to rest in a stage holds the body in the next one: a floor or a body that it falls onto, one that it is
+# lowered onto. Before the run a stage is refused for what nothing could hold wherever the body is, and else as it begins.
+cat >fall.yaml <<'EOF'
+kinematics: plane-strain
+method: fem
+analysis: {type: dynamic, end: 0.5, step: 0.01, damping: 20}
+grid: {box: {min: [-1, -0.75], max: [2, 1]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 0.5]}}, material: e}]
+materials: {e: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+walls: [{name: floor, shape: {half-space: {point: [0, -0.001], normal: [0, 1]}}, friction: 0.5}]
+loads: {gravity: [0, -10]}
+measures: {fy: {wall_force: y, of: {wall: floor}}}
+output: {every: end}
+stages: [{name: fall}, {name: rest, analysis: {type: static, steps: 2}}]
+EOF
 bears() {
   awk -F, -v row="$1" -v force="$2" 'NR > 1 { f = $row } END { exit !((f / force - 1) ^ 2 < 1e-12) }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"
 }
+for way in "fem 1" "fem 2" "mpm 1" "mpm 3" "gmm 1"; do
+  set -- $way
+  expect "fallen onto a floor, $way" 0 on_ranks $2 "$talus" run fall.yaml --out o --force --quiet --set method=$1
+  bears 4 5000
+done
+expect "a run in which it falls" 0 "$talus" run fall.yaml --out fallen --force --quiet --set 'stages=[]' --set 'analysis.end=0.4'
+expect "on from there" 0 "$talus" run fall.yaml --out o --force --quiet --set 'stages=[]' --set 'analysis={type: static, steps: 2}' --set 'initial={run: fallen}'
+bears 3 5000
+expect "lowered onto it" 0 "$talus" run fall.yaml --out o --force --quiet --set 'analysis={type: static, steps: 2}' \
+  --set 'boundary=[{name: top, on: {y: 0.5, x: [0, 1]}, displacement: {x: 0, y: -0.002}}]' --set 'stages=[{name: lower}, {name: rest, boundary: []}]'
+bears 4 5000
+expect "fallen onto a body" 0 "$talus" run fall.yaml --out o --force --quiet --set analysis.end=1 --set analysis.damping=10 --set 'walls=[]' --set 'boundary=[{on: {y: -0.75}, fix: [x, y]}]' \
+  --set 'bodies=[{name: b, shape: {box: {min: [0, 0], max: [1, 0.5]}}, material: e}, {name: a, shape: {box: {min: [0, -0.75], max: [1, -0.25]}}, material: e}]' \
+  --set 'interfaces=[{name: i, between: [b, a], friction: 0.5}]' --set 'measures={fy: {interface_force: y, of: {interface: i}}}'
+bears 4 5000
+expect "still in the air" 1 "$talus" run fall.yaml --out o --force --quiet --set analysis.end=0.01 --set 'walls[0].shape.half-space.point=[0, -0.3]'
+says err.txt "stage 'rest' cannot begin" "nothing holds 'b' in x and y: a static analysis has no answer (stage 'rest')"
+[ -s o/stage_01.h5 ] || fail "$name: the state is not kept"
+for method in fem mpm; do
+  expect "nothing to fall onto, $method" 2 "$talus" run fall.yaml --out none --quiet --set method=$method --set 'walls=[]' --set 'measures={}' --set 'boundary=[{on: {x: -1}, fix: [x]}]'
+  says err.txt "nothing holds 'b' in $([ $method = mpm ] || echo "x and ")y: a static analysis has no answer (stage 'rest')"
+done
+# Held in all by the nodes of `hold`, which a run that is resumed in a later stage needs, too.
+expect "held in a stage" 0 "$talus" run fall.yaml --out o --force --quiet --set 'analysis={type: static, steps: 2, unheld: hold}' --set 'walls[0]={name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}}' \
+  --set 'stages=[{name: a}, {name: b}]' --set 'checkpoint.steps=1'
+rm o/checkpoint_000000004.h5
+expect "and resumed there" 0 "$talus" run --resume o
+lacks err.txt "any more"
+bears 4 5000
 
 # A body on a wall with mass is held by what holds that: the body below, or what guides the wall.
 cat >plate.yaml <<'EOF'

@@ -275,7 +275,7 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, const Model
     PetscCall(SlopesStart(m->space, moves_linearly(from)));
   settle_stress(m);
   stresses_check(m, diag);
-  if (next) PetscCall(CheckHeld(m, diag));
+  PetscCall(CheckHeld(m, PETSC_TRUE, diag));
   if (next) PetscCall(AdviseHangs(m, diag));
   if (next) PetscCall(WallsCome(m, from, diag));
   PetscCall(BeginTracers(m, next ? from : NULL, diag));

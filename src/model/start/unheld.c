@@ -404,7 +404,6 @@ static PetscErrorCode CheckGroup(Model *m, UnheldGroup *g, Diag *diag)
   for (PetscInt f = 0; f < g->n_free; ++f) most = PetscMax(most, PetscAbsReal(sums[f]));
   snprintf(path, sizeof path, "bodies[%d]", (int)g->body);
   unheld_name_free(m, g, text);
-  note_free(m, g);
   if (most > (case_load_follows(m->c) ? unheld_open_surface(m) : UNHELD_BALANCE) * sums[RIGID]) {
     diag_error(diag, path, "nothing holds '%s' %s, and loads push it that way: %.3g of %.3g N are out of balance",
                m->c->bodies[g->body].name, text, (double)most, (double)sums[RIGID]);
@@ -415,7 +414,7 @@ static PetscErrorCode CheckGroup(Model *m, UnheldGroup *g, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode UnheldCheck(Model *m, Diag *diag)
+PetscErrorCode UnheldCheck(Model *m, PetscBool arrived, Diag *diag)
 {
   const AnalysisSpec *a = &m->c->analysis;
   const NodalScene scene = nodal_scene(m, m->time + a->step, m->nodes->du);
@@ -427,8 +426,7 @@ PetscErrorCode UnheldCheck(Model *m, Diag *diag)
     diag_error(diag, "analysis.unheld",
                "unheld: hold is for type static, methods mpm and fem, without interfaces and walls with mass");
   PetscCall(DiagReduce(m->comm, diag, &errors));
-  if (errors) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc2(RIGID * m->c->n_bodies, &m->unheld.dof, RIGID * m->c->n_bodies, &m->unheld.turns));
+  if (errors || !arrived) PetscFunctionReturn(0);
   PetscCall(NodalForcesBegin(&m->forces, &scene));
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, m->nodes->external));
   PetscCall(UnheldEach(m, MEET_NONE, diag, CheckGroup));
@@ -452,11 +450,24 @@ static PetscErrorCode HoldGroup(Model *m, UnheldGroup *g, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+/* In the first step of a run, or after it was resumed. */
+static PetscErrorCode HoldFirst(Model *m, UnheldGroup *g, Diag *diag)
+{
+  PetscFunctionBeginUser;
+  note_free(m, g);
+  PetscCall(HoldGroup(m, g, diag));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode UnheldHold(Model *m)
 {
+  const PetscBool first = (PetscBool)!m->unheld.dof;
+
   PetscFunctionBeginUser;
   m->unheld.n = m->unheld.turning = 0;
   m->unheld.size = 0;
-  if (m->c->analysis.unheld == UNHELD_HOLD) PetscCall(UnheldEach(m, MEET_NONE, NULL, HoldGroup));
+  if (m->c->analysis.unheld != UNHELD_HOLD) PetscFunctionReturn(0);
+  if (first) PetscCall(PetscMalloc2(RIGID * m->c->n_bodies, &m->unheld.dof, RIGID * m->c->n_bodies, &m->unheld.turns));
+  PetscCall(UnheldEach(m, MEET_NONE, NULL, first ? HoldFirst : HoldGroup));
   PetscFunctionReturn(0);
 }

@@ -157,7 +157,42 @@ static void name_directions(PetscInt dim, const PetscInt *held, char text[32])
   }
 }
 
-PetscErrorCode FindHeld(const Model *m, PetscInt *held)
+/* Does the material come to other nodes as it moves, whatever these are held by and share? */
+static PetscBool roams(const Model *m) { return (PetscBool)(m->method->restores_grid || m->method->clouds); }
+
+/* What holds any node of the grid may come to hold what comes there. */
+static PetscErrorCode AddElsewhere(const Model *m, PetscInt *joined, PetscInt *held)
+{
+  const PetscInt n = m->c->n_bodies, dim = m->dim;
+  PetscInt any[3] = {0, 0, 0};
+  unsigned char *holds;
+
+  PetscFunctionBeginUser;
+  PetscCall(NodesHeld(m, &holds));
+  for (PetscInt k = 0; k < m->grid->n_nodes * dim; ++k) any[k % dim] |= holds[k];
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, any, 3, MPIU_INT, MPI_MAX, m->comm));
+  for (PetscInt k = 0; k < n * dim; ++k) held[k] |= any[k % dim];
+  for (PetscInt k = 0; k < n * n; ++k) joined[k] = 1;
+  PetscCall(PetscFree(holds));
+  PetscFunctionReturn(0);
+}
+
+/* Whatever may come to hold a body, wherever it is then: walls that it meets, bodies at interfaces. */
+static PetscErrorCode AddChances(const Model *m, PetscInt *joined, PetscInt *held)
+{
+  const PetscInt n = m->c->n_bodies;
+
+  PetscFunctionBeginUser;
+  for (PetscInt i = 0; i < m->c->n_walls * n; ++i)
+    for (PetscInt d = 0; d < m->dim && !m->c->walls[i / n].absent; ++d)
+      held[i % n * m->dim + d] |= contact_meets_body(m->c, i / n, i % n);
+  for (const InterfaceSpec *i = m->c->interfaces; i < m->c->interfaces + m->c->n_interfaces; ++i)
+    join(n, case_body(m->c, i->between[0]), case_body(m->c, i->between[1]), joined);
+  if (roams(m)) PetscCall(AddElsewhere(m, joined, held));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode FindHeld(const Model *m, PetscBool arrived, PetscInt *held)
 {
   const PetscInt n = m->c->n_bodies;
   PetscInt *joined;
@@ -165,6 +200,7 @@ PetscErrorCode FindHeld(const Model *m, PetscInt *held)
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n * n, &joined));
   PetscCall(Touches(m, joined, held));
+  if (!arrived) PetscCall(AddChances(m, joined, held));
   for (PetscInt b = 0; b < n && m->c->kinematics->hoop; ++b) held[b * m->dim] = 1; /* a ring by its hoop */
   spread(n, m->dim, joined, held);
   PetscCall(PetscFree(joined));
@@ -183,8 +219,8 @@ static const char *balance_hint(const Model *m)
                                                                    : "analysis: {unheld: hold}";
 }
 
-/* When it is asked what nothing holds: before the first step, or when the run is over. */
-typedef enum { START, END } When;
+/* When it is asked what nothing holds: before bodies have arrived (see CheckHeld), then, when the run is over. */
+typedef enum { BEFORE, START, END } When;
 
 /* others: what goes with it, so that nothing between them holds it. */
 static void tell(const Model *m, PetscInt body, const char *others, const char *which, When when, Diag *diag)
@@ -216,7 +252,7 @@ static PetscErrorCode TellLoose(const Model *m, When when, PetscBool *told, Diag
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(n * dim, &held));
-  PetscCall(FindHeld(m, held));
+  PetscCall(FindHeld(m, (PetscBool)(when != BEFORE), held));
   for (PetscInt k = 0; k < n * dim; ++k) held[k] |= m->unheld.along[k % dim];
   for (PetscInt b = 0; b < n; ++b) {
     name_directions(dim, held + b * dim, which + 3);
@@ -259,20 +295,22 @@ static PetscErrorCode TellLines(Model *m, When when, Diag *diag)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CheckHeld(Model *m, Diag *diag)
+PetscErrorCode CheckHeld(Model *m, PetscBool arrived, Diag *diag)
 {
   const PetscInt before = diag_errors(diag);
+  const PetscBool stands = (PetscBool)(arrived || !(m->contact || roams(m)));
   PetscBool told = PETSC_FALSE;
   PetscInt points;
 
   PetscFunctionBeginUser;
   if (m->c->analysis.unheld == UNHELD_HOLD) {
-    PetscCall(UnheldCheck(m, diag));
+    PetscCall(UnheldCheck(m, stands, diag));
     PetscFunctionReturn(0);
   }
   PetscCall(ModelCountPoints(m, &points));
   if ((m->scheme->inertia && !case_equilibrates(m->c)) || !points) PetscFunctionReturn(0);
-  PetscCall(TellLoose(m, START, &told, diag));
+  PetscCall(TellLoose(m, stands ? START : BEFORE, &told, diag));
+  if (!stands) PetscFunctionReturn(0);
   if (!told) PetscCall(TellLines(m, START, diag));
   if (diag_errors(diag) == before) PetscCall(UnheldTurning(m, diag));
   PetscCall(AdviseRests(m, diag));
@@ -287,6 +325,7 @@ PetscErrorCode ModelWarnLoose(Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   if (!m->contact || m->c->analysis.type != ANALYSIS_STATIC || !m->step) PetscFunctionReturn(0);
+  if (holds && !m->unheld.dof) PetscFunctionReturn(0); /* no step was left to take */
   PetscCall(ModelInitialise(m));
   PetscCall(NodalForcesBegin(&m->forces, &scene));
   PetscCall(ContactIsOver(m->contact, m->comm));

@@ -74,9 +74,9 @@ PetscErrorCode AdviseRests(const Model *m, Diag *diag)
   PetscFunctionBeginUser;
   if (axis < 0 || !m->contact) PetscFunctionReturn(0);
   PetscCall(PetscCalloc2(n * m->dim, &held, n * m->dim, &borne));
-  PetscCall(FindHeld(m, held));
+  PetscCall(FindHeld(m, PETSC_TRUE, held));
   m->contact->slips = PETSC_TRUE;
-  PetscCall(FindHeld(m, borne));
+  PetscCall(FindHeld(m, PETSC_TRUE, borne));
   m->contact->slips = PETSC_FALSE;
   for (PetscInt b = 0; b < n; ++b)
     if (held[b * m->dim + axis] && !borne[b * m->dim + axis] && !m->c->bodies[b].absent)
