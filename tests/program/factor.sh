@@ -452,6 +452,24 @@ expect "a slope of sand" 0 "$talus" run sand.yaml --out run --force --quiet
 awk -F, 'END { exit !($3 > 1.53 && $3 < 1.61) }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
 says run/factor.csv "1,yes,stands,"
 
+# A first try is no slide for how far all goes that yields at once: what was said to stand never had 0.1 from elsewhere
+cat >skin.yaml <<'END'
+kinematics: plane-strain
+method: fem
+formulation: mean-dilatation
+analysis: {type: factor-of-safety}
+grid: {box: {min: [0, 0], max: [10, 1]}, size: 0.25}
+bodies: [{name: s, shape: {box: {min: [0, 0], max: [10, 1]}}, points_per_cell: 4, material: m}]
+materials: {m: {law: mohr-coulomb, density: 2000, young: 1e10, poisson: 0.3, friction_angle: 30, cohesion: 10}}
+boundary: [{on: {boundary: bottom}, fix: [x, y]}, {on: {boundary: left}, fix: [x]}]
+loads: {gravity: [1, -10]}
+measures: {F: {factor_of_safety: value}}
+END
+for from in 0.05 0.1; do
+  expect "a skin from $from" 0 "$talus" run skin.yaml --out run --force --quiet --set analysis.reduction.from=$from
+  awk -F, 'END { exit !($3 > 0.1 && $3 < 0.107) }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
+done
+
 # The title of a picture tells the factor, whenever the loads were on
 expect "loads on at 3 s" 0 "$talus" run clay_block.yaml --out run --force --quiet --set analysis.end=3
 near 1.2

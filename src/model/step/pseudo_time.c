@@ -22,8 +22,11 @@
 #define RECOVERS_AFTER 3
 /* Of what inertia stood in for the last time: more exact need the next place not be. */
 #define ROUGHLY 0.1
-#define AT_REST 2     /* iterations, of which the first sees that there is next to nothing to do: try without inertia */
-#define BALANCED 1e-2 /* of what forces lacked at first */
+/* Without inertia the next place is sought where forces lack so much of what they lacked at first, or when that was
+ * tried in vain: at once if a place took few iterations, else (contacts take some each time) if they lack far less. */
+#define BALANCED 1e-2
+#define FAR_LESS 1e-2
+#define AT_REST 2
 #define MOST 120
 /* What has gone so many times as far as when it was looked at last, and lacks so much of what it lacked then, flows:
  * resisting no more than that, it would come to rest after many times the way, if ever. */
@@ -36,7 +39,8 @@ typedef struct {
   PetscReal *pressure;            /* mixed: n_nodes */
   PetscReal waves, bound;
   PetscReal lack, first; /* what inertia stands in for, m/s2: the last time, the first */
-  PetscReal force;       /* the same in newtons */
+  PetscReal in_vain;     /* the same when the place without inertia was not found */
+  PetscReal force;       /* of the last time, N */
   PetscReal seen[2];     /* how far it had gone, m, and what it lacked, when it was looked at last */
   PetscInt gone, good;   /* since y began, and since one failed */
   PetscBool rests;       /* is the next place sought without inertia? */
@@ -47,7 +51,7 @@ static PetscErrorCode Create(const Model *m, PseudoTime *t)
   const PetscInt nodes = m->grid->n_nodes, dofs = nodes * m->dim;
 
   PetscFunctionBeginUser;
-  *t = (PseudoTime){.waves = FIRST_WAVES, .bound = PETSC_MAX_REAL};
+  *t = (PseudoTime){.waves = FIRST_WAVES, .bound = PETSC_MAX_REAL, .in_vain = PETSC_MAX_REAL};
   PetscCall(PetscCalloc4(dofs, &t->at, dofs, &t->before, dofs, &t->ahead, nodes, &t->pressure));
   if (m->nodes->scaled_pressure) {
     pressure_guess(m);
@@ -130,14 +134,23 @@ static PetscErrorCode GoOn(Model *m, PetscReal inertia, PetscInt iterations, Pse
   if (t->first == 0) t->first = t->lack;
   if (++t->good % RECOVERS_AFTER == 0) t->bound *= RECOVERS;
   if (iterations <= EASY) t->waves = PetscMin(t->bound, FASTER * t->waves);
-  t->rests = (PetscBool)(iterations <= AT_REST && t->lack < BALANCED * t->first);
+  const PetscReal little = BALANCED * PetscMin(t->first, t->in_vain);
+  t->rests = (PetscBool)(t->lack < (iterations <= AT_REST ? 1 : FAR_LESS) * little);
   PetscFunctionReturn(0);
+}
+
+/* Is what inertia stands in for below what the case's own tolerance lets be out of balance, and was the place found as
+ * exactly? Where things touch, it may be none that Newton's method finds at once: multipliers begin anew each time. */
+static PetscBool is_balanced(const Model *m, const StepProblem *p, const PseudoTime *t)
+{
+  return (PetscBool)(t->force + p->enough <= m->c->newton.residual * p->weight);
 }
 
 static void go_back(PseudoTime *t)
 {
   t->gone = t->good = 0;
-  if (!t->rests) {
+  if (t->rests) t->in_vain = t->lack;
+  else {
     t->waves *= SLOWER;
     t->bound = 2 * t->waves;
   }
@@ -151,6 +164,13 @@ static PetscBool flows(PseudoTime *t, PetscReal moved, PetscReal reach)
   t->seen[0] = moved;
   t->seen[1] = t->lack;
   return lacks;
+}
+
+/* Farther than what stands? In the first try all that yields moves at once, as far as it has to. */
+static PetscBool goes_too_far(Model *m, PetscReal moved, StepReport *report)
+{
+  const PetscBool first = (PetscBool)(m->strength.by >= m->strength.factor);
+  return (PetscBool)(!first && strength_slides(&m->strength, moved, report));
 }
 
 static void tell_flow(const PseudoTime *t, PetscReal moved, StepReport *report)
@@ -183,13 +203,15 @@ PetscErrorCode PseudoTimeSolve(Model *m, StepProblem *p, const LinearProblem *li
     }
     PetscCall(LargestIncrement(m, &moved));
     PetscCall(GoOn(m, p->in.inertia, newton->iterations, &t));
-    found = rested;
-    if (!found && strength_slides(&m->strength, moved, report)) report->flows = PETSC_TRUE;
+    found = (PetscBool)(rested || is_balanced(m, p, &t));
+    if (!found && goes_too_far(m, moved, report)) report->flows = PETSC_TRUE;
     else if (!found && flows(&t, moved, m->strength.reach)) tell_flow(&t, moved, report);
     if (found || report->flows) break;
   }
+  hold_back(m, 0, t.at);
   newton->iterations = iterations;
-  newton->converged = (PetscBool)(newton->converged && found);
+  if (!found && !report->flows && !newton->interrupted) newton->reason = "it neither rests nor flows";
+  newton->converged = found;
   PetscCall(Destroy(&t));
   PetscFunctionReturn(0);
 }
