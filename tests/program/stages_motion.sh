@@ -119,6 +119,8 @@ anew "$here, mass: {mass: 10, velocity: [0, -0.5], spin: 7}" "0.5 2.5 0 -0.5 7 7
 anew "$here, mass: {mass: 20, $moves}" "2.5 3 1 0 1 2 10.2"
 anew "$here, mass: {mass: 20, $moves, centre: [0.5, 3.1]}" "2.3618226709324 2.969883132106 0.94596976941319 -0.08414709848079 1 2 9.2193953882637"
 anew "shape: {circle: {centre: [0.5, 2], radius: 0.2}}, mass: {mass: 20, $moves}" "1.5 2 1 0 1 1 10.2"
+anew "$here, mass: {mass: 20}" "2.5 3 1 0 1 2 10.2"
+anew "$here, mass: {mass: 10, velocity: [0, 0]}" "1.5 3 0 0 1 2 0.1"
 anew "absent: true" "1.5 3 1 0 1 1 0"
 stop='stages[1].reset=[velocity]'
 anew "$here, mass: {mass: 10, $moves}, friction: 0.2" "1.5 3 0 0 0 1 0" --set "$stop"

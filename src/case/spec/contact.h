@@ -6,7 +6,7 @@ typedef enum { CONTACT_FRICTIONLESS, CONTACT_FRICTION, CONTACT_STICK, CONTACT_BO
 
 /* What moves a wall that has mass: what it touches, its weight, and a load at its centre. */
 typedef struct {
-  PetscBool has_density, has_total, has_centre, has_inertia;
+  PetscBool has_density, has_total, has_centre, has_inertia, has_velocity, has_spin;
   PetscReal density;              /* kg/m3 */
   PetscReal total;                /* or the mass, kg, in the plane of a metre of depth */
   PetscReal centre[3];            /* of mass, at the start, m */

@@ -1,6 +1,6 @@
 /* How walls with mass go on with a stage: one that comes begins as the stage says. One that was there stays where it is
- * unless it is drawn anew, and keeps its velocity and spin, whatever its mass is now, but for what the stage says in
- * other numbers than the one before. */
+ * unless it is drawn anew, and keeps its velocity and spin, whatever its mass is now, but for what the stage says where the
+ * one before said nothing, or in other numbers. */
 #include <string.h>
 #include "model/stage/stage_private.h"
 
@@ -19,13 +19,14 @@ static PetscBool differ(const PetscReal a[3], const PetscReal b[3])
   return (PetscBool)(a[0] != b[0] || a[1] != b[1] || a[2] != b[2]);
 }
 
-/* What the stage says of its motion. */
+/* What the stage says of its motion; of what it does not say, nothing changes. */
 static void take_word(RigidWall *b, const WallMassSpec *is, const WallMassSpec *was)
 {
+  const PetscBool moves = is->has_velocity && (!was->has_velocity || differ(is->velocity, was->velocity));
+  const PetscBool spins = is->has_spin && (!was->has_spin || differ(is->spin, was->spin));
   PetscReal omega[3];
   rigid_spin(b, omega);
-  rigid_move(b, differ(is->velocity, was->velocity) ? is->velocity : b->now.v,
-             differ(is->spin, was->spin) ? is->spin : omega);
+  rigid_move(b, moves ? is->velocity : b->now.v, spins ? is->spin : omega);
 }
 
 void walls_go_on(Model *m, const Model *before)
