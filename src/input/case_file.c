@@ -303,10 +303,10 @@ static void tell_ages(const YamlNode *root, Case *c)
   for (PetscInt i = 0; i < c->n_boundary; ++i) tell_age(boundary->child[i], &c->boundary[i].amplitude);
   for (PetscInt i = 0; i < c->n_measures; ++i) c->measures[i].since = measures->child[i]->stage;
   for (PetscInt i = 0; i < c->n_walls; ++i) {
-    const YamlNode *shape = yaml_find(walls->child[i], "shape");
+    const YamlNode *shape = yaml_find(walls->child[i], "shape"), *mass = yaml_find(walls->child[i], "mass");
     c->walls[i].since = walls->child[i]->stage;
     if (shape) c->walls[i].drawn = shape->stage;
-    tell_age(walls->child[i], &c->walls[i].mass.amplitude);
+    if (mass) tell_age(mass, &c->walls[i].mass.amplitude);
     for (PetscInt k = 0; k < c->walls[i].n_motions; ++k) tell_age(walls->child[i], &c->walls[i].motions[k].amplitude);
   }
   for (PetscInt l = 0, n = 0; l < 3; ++l) {

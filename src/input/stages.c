@@ -224,15 +224,27 @@ static PetscErrorCode LayOnEntry(const Layer *l, YamlNode *was, const YamlNode *
   PetscFunctionReturn(0);
 }
 
-/* What is said anew, but for its shape, has been drawn where it was. */
+/* What stands there in the same words is as old as it was, unless it comes only now; -1: in other words. */
+static PetscInt age_of(const YamlNode *was, const YamlNode *entry, const char *key)
+{
+  const YamlNode *before = yaml_find(was, key), *now = yaml_find(entry, key);
+  return before && now && !is_absent(was) && yaml_equal(before, now) ? before->stage : -1;
+}
+
+/* A wall that rubs in another way has been drawn where it was, and the load of its mass goes on. */
 static PetscErrorCode ReplaceEntry(const Layer *l, YamlNode *was, const YamlNode *entry)
 {
-  const YamlNode *list = was->parent, *drawn = yaml_find(was, "shape"), *shape = yaml_find(entry, "shape");
-  const PetscInt index = was->index, age = drawn && shape && yaml_equal(drawn, shape) ? drawn->stage : l->stage;
+  static const char *const kept[] = {"shape", "mass"};
+  const YamlNode *list = was->parent;
+  const PetscInt index = was->index, age[] = {age_of(was, entry, kept[0]), age_of(was, entry, kept[1])};
 
   PetscFunctionBeginUser;
   PetscCall(Replace(l, was, entry));
-  if (shape) set_stage(yaml_find(list->child[index], "shape"), age);
+  for (int k = 0; k < 2; ++k) {
+    YamlNode *node = age[k] < 0 ? NULL : yaml_find(list->child[index], kept[k]);
+    if (node) set_stage(node, age[k]);
+    if (node) set_repeated(node, node);
+  }
   PetscFunctionReturn(0);
 }
 

@@ -125,6 +125,45 @@ anew "absent: true" "1.5 3 1 0 1 1 0"
 stop='stages[1].reset=[velocity]'
 anew "$here, mass: {mass: 10, $moves}, friction: 0.2" "1.5 3 0 0 0 1 0" --set "$stop"
 anew "$here, mass: {mass: 10, velocity: [0, -0.5], spin: 1}" "1.5 2.5 0 -0.5 0 1 1.25" --set "$stop"
+# A table over time of a mass in the same words goes on with its clock: 5 N for a second, which end within a step of the next.
+push='force: [5, 0], amplitude: [[0, 1], [1, 1], [1.25, 0]]'
+anew "$here, mass: {mass: 10, $moves, $push}, friction: 0.2" "3.3046875 3 1.5625 0 1 2 12.30703125" --set "walls[0].mass={mass: 10, $moves, $push}"
+# In statics what a wall with mass bears goes from the old value to the new one, whatever else of it a stage changes; so
+# does it where the run is resumed between them.
+cat >weighs.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 3}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.25}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 0.5]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{on: {y: 0}, fix: [x, y]}]
+walls: [{name: w, shape: {box: {min: [0, 0.5], max: [1, 0.75]}}, friction: 0.3, mass: {mass: 100, force: [100, -1000], torque: 20}}]
+loads: {gravity: [0, -10]}
+measures: {fx: {wall_force: x, of: {wall: w}}, fy: {wall_force: y, of: {wall: w}}}
+checkpoint: {steps: 1, keep: 99}
+stages:
+  - {name: presses}
+  - {name: rubs, walls: [{name: w, shape: {box: {min: [0, 0.5], max: [1, 0.75]}}, friction: 0.5, mass: {mass: 100, force: [100, -1000], torque: 20}}]}
+  - {name: more, walls: [{name: w, shape: {box: {min: [0, 0.5], max: [1, 0.75]}}, friction: 0.5, mass: {mass: 100, force: [200, -2000], torque: 20}}]}
+  - {name: heavier, walls: [{name: w, shape: {box: {min: [0, 0.5], max: [1, 0.75]}}, friction: 0.5, mass: {mass: 200, force: [200, -2000], torque: 20}}]}
+END
+borne() {
+  awk -F, 'function part(n, from) { return n < from ? 0 : n > from + 3 ? 1 : (n - from) / 3 }
+    NR > 1 { n = NR - 2; x = 100 * (part(n, 0) + part(n, 6)); y = -2000 * part(n, 0) - 1000 * (part(n, 6) + part(n, 9)) }
+    NR > 1 && (($4 - x) ^ 2 > 1e-8 || ($5 - y) ^ 2 > 1e-8) { bad = 1; print x, y, $0 } END { exit bad || NR != 14 }' \
+    "$1/history.csv" >out.txt || { fail "$name"; head -n 3 out.txt; }
+}
+for method in fem mpm; do
+  for ranks in 1 2 3; do
+    expect "what walls bear goes on, $method on $ranks" 0 on_ranks $ranks "$talus" run weighs.yaml --out weighs --force --quiet --set method=$method
+    borne weighs
+  done
+  rm -f weighs/checkpoint_*[089].h5 weighs/checkpoint_*1[12].h5
+  expect "and does so resumed, $method" 0 "$talus" run --resume weighs --quiet
+  borne weighs
+done
+
 # And one that is gone for good, which a force has pushed by 1.25 m: its work stays, its motion goes.
 sed -e '/: {wall_/d' -e 's/^measures:/&\n  came: {energy: external}/' -e 's/spin: 1}/spin: 1, force: [5, 0]}/' -e 's/\[WALL\]/[]/' anew.yaml >anew_wall.yaml
 expect "gone for good" 0 "$talus" run anew_wall.yaml --out anew --force --quiet

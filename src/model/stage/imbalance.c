@@ -117,6 +117,8 @@ PetscErrorCode HoldImbalance(Model *m, const Case *from, Imbalance *imbalance)
   if (held) PetscCall(PetscArrayzero(held, dofs)); /* that of the stage before is over */
   mark_fixed(m);
   PetscCall(Remains(m, from, residual));
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  PetscCall(RigidHold(m->contact, &scene));
   PetscCall(PetscMalloc1(dofs, &lacks));
   PetscCall(PetscArraycpy(lacks, residual, dofs));
   keep_free(m, residual);

@@ -223,6 +223,9 @@ static PetscErrorCode ToTables(const void *data, const NodalScene *scene, Tables
   PetscCall(TableAdd(table, "state", NULL, COLUMN_REAL, RIGID_NUMBERS, NULL, &column));
   for (PetscInt k = 0; k < s->n_rigid; ++k)
     PetscCall(PetscMemcpy((PetscReal *)column->data + k * RIGID_NUMBERS, &s->rigid[k].now, sizeof s->rigid->now));
+  PetscCall(TableAdd(table, "held", NULL, COLUMN_REAL, RIGID, NULL, &column));
+  for (PetscInt k = 0; k < s->n_rigid; ++k)
+    PetscCall(PetscArraycpy((PetscReal *)column->data + k * RIGID, s->rigid[k].held, RIGID));
   PetscFunctionReturn(0);
 }
 
@@ -231,6 +234,8 @@ static void rigid_from_tables(Contact *s, const Tables *tables, char reason[256]
 {
   const Table *table = tables_find(tables, "rigid_walls");
   const PetscReal *state = table ? table_data(table, "state", COLUMN_REAL, RIGID_NUMBERS, reason) : NULL;
+  const PetscReal *held =
+    table && table_has(table, "held") ? table_data(table, "held", COLUMN_REAL, RIGID, reason) : NULL;
   if (reason[0]) return;
   if ((table ? table->rows : 0) != s->n_rigid) {
     snprintf(reason, 256, "walls with mass are others");
@@ -238,6 +243,7 @@ static void rigid_from_tables(Contact *s, const Tables *tables, char reason[256]
   }
   for (PetscInt k = 0; k < s->n_rigid; ++k) {
     (void)memcpy(&s->rigid[k].start, state + k * RIGID_NUMBERS, sizeof s->rigid->start);
+    for (int i = 0; i < RIGID && held; ++i) s->rigid[k].held[i] = held[RIGID * k + i];
     rigid_restore(s->rigid + k, s->walls);
   }
 }

@@ -266,6 +266,8 @@ typedef struct {
 PetscErrorCode ContactProject(Contact *contact, const ContactMotion *motion, ContactSum *sum);
 /* contact_rigid.c. Collective. What contact does to walls with mass, in the terms of `rigid`. */
 PetscErrorCode RigidSums(Contact *contact, const NodalScene *scene);
+/* Collective. A stage begins: what the contact points, found there, bore in the last step holds them, and fades. */
+PetscErrorCode RigidHold(Contact *contact, const NodalScene *scene);
 /* Collective. At the increments of the last assembly, for n = RIGID n_rigid unknowns of walls: of this rank the
  * derivatives of the nodes' residual by them, B, and of theirs by du, C (n x n_nodes x dim each, zero on entry); D:
  * of theirs by themselves, n x n, of all ranks. Those that a wall does not have are 1 on the diagonal. */

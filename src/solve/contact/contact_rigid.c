@@ -60,6 +60,30 @@ PetscErrorCode RigidSums(Contact *s, const NodalScene *scene)
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode RigidHold(Contact *s, const NodalScene *scene)
+{
+  PetscReal *bears;
+
+  PetscFunctionBeginUser;
+  if (!s || !s->n_rigid) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(RIGID * s->n_rigid, &bears));
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    const RigidWall *b = contact_rigid(s, c);
+    PetscReal arm[3], motion[3];
+    if (!b || c->before == CONTACT_OPEN || c->gone) continue;
+    rigid_arm(b, PETSC_TRUE, c->x, arm);
+    for (int i = 0; i < RIGID; ++i) {
+      motion_of(i, arm, motion);
+      bears[RIGID * (b - s->rigid) + i] += vector_dot(motion, c->last);
+    }
+  }
+  PetscCall(
+    MPIU_Allreduce(MPI_IN_PLACE, bears, (PetscMPIInt)(RIGID * s->n_rigid), MPIU_REAL, MPI_SUM, scene->grid->comm));
+  for (PetscInt k = 0; k < s->n_rigid; ++k) rigid_hold(s->rigid + k, scene->c, scene->t, bears + RIGID * k);
+  PetscCall(PetscFree(bears));
+  PetscFunctionReturn(0);
+}
+
 /* One contact point: its force f, K, and levers. */
 typedef struct {
   const ContactPoint *c;

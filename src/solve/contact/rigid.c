@@ -1,6 +1,7 @@
 #include "solve/contact/rigid.h"
 #include "base/math/vector.h"
 #include "base/math/tensor.h"
+#include "solve/forces/release.h"
 #include <math.h>
 
 static void turn(const PetscReal R[9], const PetscReal V[3], PetscReal v[3])
@@ -166,10 +167,20 @@ static void load_at(const RigidWall *b, const Case *c, PetscReal t, PetscReal lo
 {
   const WallMassSpec *m = &c->walls[b->wall].mass;
   const PetscReal factor = case_factor(c, &m->amplitude, t), weight = case_factor(c, &c->gravity_amplitude, t);
+  const PetscReal share = release_share(c, t);
   for (int d = 0; d < 3; ++d) {
     load[d] = factor * m->force[d] + (m->gravity ? b->body.mass * weight * c->gravity[d] : 0);
     load[d + 3] = factor * m->torque[d];
   }
+  for (int i = 0; i < RIGID; ++i) load[i] += share * b->held[i];
+}
+
+void rigid_hold(RigidWall *b, const Case *c, PetscReal t, const PetscReal bears[RIGID])
+{
+  PetscReal load[RIGID];
+  for (int i = 0; i < RIGID; ++i) b->held[i] = 0;
+  load_at(b, c, t, load);
+  for (int i = 0; i < RIGID; ++i) b->held[i] = c->release > 0 ? bears[i] - load[i] : 0;
 }
 
 void rigid_begin(RigidWall *b, Walls *walls, const Case *c, PetscReal t, PetscReal dt, PetscReal share,

@@ -34,6 +34,7 @@ typedef struct {
   PetscReal dt, share;      /* dt 0: statics; share: the mean of contact over what the balance asks for */
   PetscReal part;           /* of the step at which forces have their levers: 1, in the midpoint rule and bonded 1/2 */
   PetscReal load[2][RIGID]; /* weight, force and torque at the step's start and end */
+  PetscReal held[RIGID];    /* what more contact bore when the stage began: it fades (forces/release.h) */
   PetscReal q[RIGID];       /* increments: translation d, and theta of exp(theta), m, rad */
   /* of contact on the material at the last assembly, over all ranks: forces and torques, and the sums of their
    * sizes; penalties of what is near, N/m, and times the squares of their levers, N m */
@@ -56,6 +57,8 @@ PetscErrorCode RigidCreate(const Case *c, Walls *walls, Diag *diag, PetscInt *n,
 /* A step, or a try of it, begins at t. middle: forces balance there. */
 void rigid_begin(RigidWall *b, Walls *walls, const Case *c, PetscReal t, PetscReal dt, PetscReal share,
                  PetscBool middle);
+/* A stage begins at t, and contact on the material bears so much: what loads at that time lack of it. */
+void rigid_hold(RigidWall *b, const Case *c, PetscReal t, const PetscReal bears[RIGID]);
 /* First guess: by inertia, or (statics) as in the last step. */
 void rigid_guess(RigidWall *b, Walls *walls, PetscBool previous);
 /* The wall where its increments put it. */

@@ -31,7 +31,8 @@ static const SchemaEntry stage_entries[] = {
           "likewise; walls that come later are `absent` at the top. A wall that is given anew begins where its shape "
           "is, not where its motion has brought it. One with mass that was there stays where it is, as long as its "
           "shape is in the same words, and keeps its velocity and spin, whatever its mass is now, unless the stage "
-          "says others; one that comes begins as it is said"),
+          "says others; its load goes on as it was if `mass` is in the same words, and else, in statics, from what the "
+          "wall bore to the new value; one that comes begins as it is said"),
   PART_OF("interfaces", "likewise, of another law; which bodies meet stays"),
   PART_OF(
     "loads",
