@@ -344,6 +344,32 @@ static void test_rests(void **state)
   EACH_OF (k, ways) rests(&ways[k]);
 }
 
+/* A smooth plate whose load is off the middle of the block tilts, and stays where it is: it went to where the middle is
+ * below the load, which is an equilibrium on its head. */
+static void test_tilts(void **state)
+{
+  static const Hit any = {"fem", "cell", NULL, CELL_HEXAHEDRON, 0, PETSC_FALSE, 0.25, 0};
+  Bench b;
+  WallSpec wall;
+  (void)state;
+  below_ball(&b, &any, PETSC_FALSE, &wall);
+  wall.shape = (Shape){.kind = SHAPE_BOX, .min = {0.4, -0.05, 0.5}, .max = {1.6, 0.65, 0.7}};
+  for (int d = 0; d < 3; ++d) wall.mass.velocity[d] = wall.mass.spin[d] = 0;
+  wall.mass.force[2] = -100;
+  b.c.newton.residual = 1e-8;
+  bench_motion(&b, 2, 0, MOTION_FIXED, 7);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  while (m->time < 1 - 1e-9) model_step(m, 0.5);
+  const RigidState *now = &m->contact->rigid->now;
+  PetscPrintf(PETSC_COMM_WORLD, "a plate that tilts: moved %.2g %.2g %.2g, turned %.2g %.2g %.2g, force %.8g\n",
+              (double)now->moved[0], (double)now->moved[1], (double)now->moved[2], (double)now->turned[0],
+              (double)now->turned[1], (double)now->turned[2], (double)of_ball(m, "wall_force", 2));
+  CHECK(now->turned[0] < -1e-5, "it does not tilt");
+  for (int d = 0; d < 2; ++d) CHECK_CLOSE(now->moved[d], 0, 1e-6);
+  CHECK_CLOSE(of_ball(m, "wall_force", 2), -100, 1e-4);
+  CALL(ModelDestroy(&m));
+}
+
 /* A bar that is bonded to a wall which can turn about its middle falls as a pendulum, by Newmark's rule: what the wall
  * gains is the torque that it is told to have given, and the angle that of the ordinary differential equation. The
  * wall had its torques from where forces ended and the bar from half-way: 29 % less, and 1.7 % of the angle. */
@@ -418,7 +444,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_hits),    cmocka_unit_test(test_several),    cmocka_unit_test(test_flies),
     cmocka_unit_test(test_turns),   cmocka_unit_test(test_stands),     cmocka_unit_test(test_floats),
     cmocka_unit_test(test_endless), cmocka_unit_test(test_centreless), cmocka_unit_test(test_carries),
-    cmocka_unit_test(test_rests),
+    cmocka_unit_test(test_rests),   cmocka_unit_test(test_tilts),
   };
   return run_model_tests_in_turns(argc, argv, tests);
 }

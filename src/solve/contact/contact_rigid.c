@@ -113,6 +113,14 @@ static PetscBool touch_of(const Contact *s, ContactPoint *c, const RigidWall *b,
   return PETSC_TRUE;
 }
 
+/* Of the wall's own residual what forces change by: without their levers. */
+static void add_resistance(const RigidWall *b, const Touch *t, PetscReal M[RIGID * RIGID])
+{
+  for (int i = 0; i < RIGID; ++i)
+    for (int j = 0; j < RIGID; ++j)
+      if (rigid_has(b, i) && rigid_has(b, j)) M[RIGID * i + j] += b->share * vector_dot(t->arm[i], t->change[j]);
+}
+
 /* By the wall's unknowns j: forces on nodes, and its own residual. */
 static void add_columns(const Contact *s, const RigidWall *b, const Touch *t, PetscInt dofs, PetscReal *B, PetscReal *D)
 {
@@ -161,27 +169,46 @@ static PetscReal digits_of(const RigidWall *b)
   return DIGITS * PETSC_MACHINE_EPSILON * (1 + PetscSqrtReal(vector_dot(centre, centre)) / lever_of(b, 3));
 }
 
-/* v, of unit length where rotations are lengths, is held, and what acts along it told. */
+/* Do loads act along v as the wall was drawn, or only since it has tilted? */
+static PetscBool acts_as_drawn(const RigidWall *b, const PetscReal v[RIGID])
+{
+  PetscReal drawn[RIGID], along = 0, acts = 0;
+  rigid_as_drawn(b, v, drawn);
+  rigid_as_drawn(b, v + 3, drawn + 3);
+  for (int i = 0; i < RIGID; ++i) {
+    along += drawn[i] * b->load[1][i] / lever_of(b, i);
+    acts += PetscAbsReal(b->load[1][i]) / lever_of(b, i);
+  }
+  return (PetscBool)(PetscAbsReal(along) > NOTHING * acts);
+}
+
+/* v, of unit length where rotations are lengths, is held. What acts along it is told; but for what does so as the wall
+ * tilts, which a hold bears. */
 static void hold_motion(RigidWall *b, const PetscReal v[RIGID], PetscInt n, PetscReal *D)
 {
+  const PetscBool acts = acts_as_drawn(b, v);
   PetscReal r[RIGID], along = 0;
   rigid_residual(b, r);
   for (int i = 0; i < RIGID; ++i) along += v[i] * r[i] / lever_of(b, i);
   for (int i = 0; i < RIGID; ++i) {
-    b->adrift[i] -= along * v[i] * lever_of(b, i);
-    for (int j = 0; j < RIGID; ++j) D[i * n + j] += b->stiff * v[i] * lever_of(b, i) * v[j] * lever_of(b, j);
+    if (acts) b->adrift[i] -= along * v[i] * lever_of(b, i);
+    for (int j = 0; j < RIGID; ++j) {
+      D[i * n + j] += b->stiff * v[i] * lever_of(b, i) * v[j] * lever_of(b, j);
+      if (!acts) b->borne[RIGID * i + j] += v[i] * lever_of(b, i) * v[j] / lever_of(b, j);
+    }
   }
 }
 
-/* In statics: motions against which the tangent by contact, D (6 x 6, rows of n numbers), has no more than digits are
- * held where they are, as if what is near pushed them back. */
-static void hold(RigidWall *b, PetscInt n, PetscReal *D)
+/* In statics: motions that change forces of contact, M (6 x 6), by no more than digits are held where they are, as if
+ * what is near pushed them back, in D (rows of n numbers). That levers change is no resistance: a plate that tilts went
+ * along itself to where it does not tilt, an equilibrium on its head. */
+static void hold(RigidWall *b, const PetscReal M[RIGID * RIGID], PetscInt n, PetscReal *D)
 {
   PetscReal A[RIGID * RIGID], V[RIGID * RIGID], v[RIGID];
   for (int i = 0; i < RIGID; ++i) {
     b->adrift[i] = 0;
-    for (int j = 0; j < RIGID; ++j)
-      A[RIGID * i + j] = rigid_has(b, i) && rigid_has(b, j) ? D[i * n + j] / (lever_of(b, i) * lever_of(b, j)) : 0;
+    for (int j = 0; j < RIGID; ++j) b->borne[RIGID * i + j] = 0;
+    for (int j = 0; j < RIGID; ++j) A[RIGID * i + j] = M[RIGID * i + j] / (lever_of(b, i) * lever_of(b, j));
   }
   svd_turn(RIGID, A, V);
   for (int j = 0; j < RIGID && b->dt == 0; ++j) {
@@ -207,20 +234,25 @@ PetscErrorCode RigidTangent(Contact *s, const NodalScene *scene, PetscReal *B, P
 {
   const PetscInt n = RIGID * s->n_rigid, dofs = scene->grid->n_nodes * s->dim;
 
+  PetscReal *M;
+
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(D, n * n));
+  PetscCall(PetscCalloc1(RIGID * n, &M));
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     const RigidWall *b = contact_rigid(s, c);
     Touch t;
     if (!b || !touch_of(s, c, b, scene, &t)) continue;
+    add_resistance(b, &t, M + RIGID * RIGID * (b - s->rigid));
     add_columns(s, b, &t, dofs, B, D);
     add_rows(s, b, &t, scene->whole, dofs, C);
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, D, (PetscMPIInt)(n * n), MPIU_REAL, MPI_SUM, scene->grid->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, M, (PetscMPIInt)(RIGID * n), MPIU_REAL, MPI_SUM, scene->grid->comm));
   for (PetscInt k = 0; k < s->n_rigid; ++k) {
     RigidWall *b = s->rigid + k;
     PetscReal own[RIGID * RIGID];
-    hold(b, n, D + RIGID * k * (n + 1));
+    hold(b, M + RIGID * RIGID * k, n, D + RIGID * k * (n + 1));
     rigid_inertia(b, own);
     for (int i = 0; i < RIGID; ++i)
       for (int j = 0; j < RIGID; ++j) {
@@ -229,5 +261,6 @@ PetscErrorCode RigidTangent(Contact *s, const NodalScene *scene, PetscReal *B, P
         else *entry = i == j;
       }
   }
+  PetscCall(PetscFree(M));
   PetscFunctionReturn(0);
 }

@@ -90,6 +90,13 @@ void rigid_place(const RigidWall *b, Walls *walls)
   wall_put(walls, b->wall, R, T);
 }
 
+void rigid_as_drawn(const RigidWall *b, const PetscReal v[3], PetscReal drawn[3])
+{
+  PetscReal R[9];
+  turn_matrix(b->q + 3, b->now.R, R);
+  turn_back(R, v, drawn);
+}
+
 static void own_lever(const RigidWall *b, PetscReal part, const PetscReal x[3], PetscReal lever[3])
 {
   for (int d = 0; d < 3; ++d) lever[d] = x[d] - b->body.centre[d] - b->now.moved[d] - part * b->q[d];
@@ -191,6 +198,7 @@ void rigid_begin(RigidWall *b, Walls *walls, const Case *c, PetscReal t, PetscRe
   b->part = middle || (b->dt > 0 && c->walls[b->wall].contact == CONTACT_BONDED) ? 0.5 : 1;
   b->now.step = dt;
   b->stands = wall_stands(walls, b->wall, t + dt);
+  for (int i = 0; i < RIGID * RIGID; ++i) b->borne[i] = 0;
   load_at(b, c, middle ? t + dt / 2 : t, b->load[0]);
   load_at(b, c, middle ? t + dt / 2 : t + dt, b->load[1]);
   rigid_guess(b, walls, PETSC_FALSE);
@@ -233,13 +241,14 @@ static void moment_change(const RigidWall *b, PetscReal rate[3])
 
 void rigid_residual(const RigidWall *b, PetscReal r[RIGID])
 {
-  PetscReal rate[3] = {0, 0, 0};
+  PetscReal rate[3] = {0, 0, 0}, all[RIGID];
   if (b->dt > 0) moment_change(b, rate);
   for (int i = 0; i < RIGID; ++i) {
     const PetscReal own =
       b->dt > 0 ? (i < 3 ? b->body.mass * 2 * (b->q[i] / b->dt - b->now.v[i]) / b->dt : rate[i - 3]) : 0;
-    r[i] = rigid_has(b, i) ? own - load_of(b, i) + b->share * b->contact[i] : 0;
+    all[i] = r[i] = rigid_has(b, i) ? own - load_of(b, i) + b->share * b->contact[i] : 0;
   }
+  for (int i = 0; i < RIGID * RIGID; ++i) r[i / RIGID] -= b->borne[i] * all[i % RIGID];
 }
 
 void rigid_inertia(const RigidWall *b, PetscReal D[RIGID * RIGID])

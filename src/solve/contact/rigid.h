@@ -40,8 +40,9 @@ typedef struct {
    * sizes; penalties of what is near, N/m, and times the squares of their levers, N m */
   PetscReal contact[RIGID], size[2], stiff, twist;
   PetscReal adrift[RIGID]; /* statics: what acted along motions that nothing resisted at the last tangent, N, N m */
-  PetscReal given[3];      /* momentum that contact took from it in this step, kg m/s */
-  PetscReal lost;          /* energy of motion that impulses took, J */
+  PetscReal borne[RIGID * RIGID]; /* and the share of forces and torques that holds bear there, as it tilts */
+  PetscReal given[3];             /* momentum that contact took from it in this step, kg m/s */
+  PetscReal lost;                 /* energy of motion that impulses took, J */
 } RigidWall;
 
 /* The rigid wall of a wall of the case, or NULL. */
@@ -75,6 +76,8 @@ void rigid_turns(const RigidWall *b, int axis, PetscReal a[3]);
 /* Position against the centre at the start, or at the end of the step, and velocity there. */
 void rigid_arm(const RigidWall *b, PetscBool start, const PetscReal x[3], PetscReal arm[3]);
 void rigid_velocity(const RigidWall *b, const PetscReal arm[3], PetscReal v[3]);
+/* A vector of the wall as it stands at the end of the step, turned back to where it was drawn. */
+void rigid_as_drawn(const RigidWall *b, const PetscReal v[3], PetscReal drawn[3]);
 /* Change of velocity and spin by momentum p and its moment (6 numbers). */
 void rigid_respond(const RigidWall *b, const PetscReal p[RIGID], PetscReal change[RIGID]);
 void rigid_push(RigidWall *b, const PetscReal p[RIGID]);

@@ -111,8 +111,8 @@ PetscErrorCode NewtonRigidBegin(Newton *n, Vec y)
   if (!all) PetscFunctionReturn(0);
   PetscCall(PetscCalloc6(all * dofs, &b.B, all * dofs, &b.C, all * all, &b.D, all, &b.r, all, &b.touched, all, &b.Z));
   PetscCall(VecDuplicate(n->x, &b.c));
+  PetscCall(RigidTangent(s, &p->scene, b.B, b.C, b.D)); /* which says what is held */
   for (PetscInt k = 0; k < s->n_rigid; ++k) rigid_residual(s->rigid + k, b.r + RIGID * k);
-  PetscCall(RigidTangent(s, &p->scene, b.B, b.C, b.D));
   PetscCall(Condense(n, &b, y));
   solve_dense(all, b.D, b.r);
   PetscCall(PetscRealloc((size_t)(2 * all) * sizeof *n->rigid, &n->rigid));
@@ -183,10 +183,14 @@ static PetscBool is_loose(const Contact *s, const RigidWall *wall)
   return (PetscBool)(rigid_floats(wall) && (wall->stiff == 0 || !held));
 }
 
+/* What it is near to may not hold it, or the iteration has lost what would. */
 static void tell_loose(const RigidWall *wall, const char *name, size_t room, char *text)
 {
-  snprintf(text, room, "the wall with mass '%s' touches nothing%s, and in statics nothing else holds it", name,
-           wall->stiff > 0 ? " where the iteration ended, near as it is to a body" : "");
+  snprintf(text, room, "the wall with mass '%s' touches nothing%s", name,
+           wall->stiff > 0
+             ? " where the iteration ended, near as it is to a body: nothing holds it, it slides off, or it "
+               "needs its weight before what friction holds (an `amplitude` that begins later)"
+             : ", and in statics nothing else holds it");
 }
 
 static void tell_adrift(int i, const char *name, size_t room, char *text)
