@@ -209,6 +209,11 @@ typedef struct Model {
     PetscInt ways;
     PetscReal first, last;
   } unstable;
+  /* of clouds: when parts that no material joins first came into each other, s, and where, m; points: 0: never */
+  struct {
+    PetscInt points, body;
+    PetscReal time, place[3];
+  } entered;
   Tries tries; /* since the start */
   /* most of a piece of its table of strength that a point of this rank has passed in a step (Law.passed) */
   PetscReal passed;

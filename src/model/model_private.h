@@ -195,6 +195,8 @@ PetscErrorCode ExplicitBalance(Model *model, StepReport *report);
 void energy_of_points(const Model *model, PetscReal energy[2]);
 /* step/accept.c. Before the new state is there (sign -1) and after: what it has more of plastic strain. */
 void note_flow(Model *model, PetscReal sign);
+/* step/entered.c. Collective. Whether parts of clouds that are strangers to each other have met (Model.entered). */
+PetscErrorCode NoteEntered(Model *model);
 /* step/accept.c. Collective. Points take over stress and history, and the boundary its forces. */
 PetscErrorCode CommitStep(Model *model, PetscReal dt, EnergyStep *energy);
 /* Collective. Points and nodes go where the solution leads them. */

@@ -21,6 +21,7 @@ typedef struct {
   const Grid *grid;
   PetscBool hoop;          /* see Kinematics */
   const Neighbours *nodes; /* of clouds: the nodes by their places, of each velocity field */
+  const PetscReal *start;  /* of clouds: where these were at the start, as cloud_start(); NULL: clouds ask nothing */
   PetscBool follows;       /* of clouds: do they follow the stretch of the material? */
   /* do the points stand on the hull of all nodes, as nodes themselves and carriers of loads do? */
   PetscBool on_hull;

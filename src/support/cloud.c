@@ -54,6 +54,25 @@ static void look_around(const Neighbours *nodes, const NeighboursMap *map, const
     for (PetscInt d = 0; d < dim; ++d) s->X[i * dim + d] = nodes->at[s->place[i] * dim + d];
 }
 
+/* Those of them alone that material joins to the point. PETSC_FALSE: the nearest is none. */
+static PetscBool keep_joined(PetscInt dim, const CloudRule *rule, const CloudOrigin *origin, Surroundings *s)
+{
+  PetscReal start[3 * CLOUD_MAX_NODES];
+  PetscBool joined[CLOUD_MAX_NODES];
+  PetscInt n = 0;
+  for (PetscInt i = 0; i < s->n; ++i)
+    for (PetscInt d = 0; d < dim; ++d) start[i * dim + d] = rule->start[s->place[i] * dim + d];
+  if (!matter_find_joined(rule->matter, origin->field, origin->from, s->n, start, joined)) return PETSC_TRUE;
+  for (PetscInt i = 0; i < s->n; ++i) {
+    if (!joined[i]) continue;
+    s->place[n] = s->place[i];
+    for (PetscInt d = 0; d < dim; ++d) s->X[n * dim + d] = s->X[i * dim + d];
+    ++n;
+  }
+  s->n = n;
+  return joined[0];
+}
+
 /* Do nodes beyond the radius aimed at have no part in a cloud of this radius? They have where links
  * lead through them. */
 static PetscBool radius_is_enough(const CloudSupport *s)
@@ -92,7 +111,7 @@ static SupportReport choose_cloud(const CloudSupport *support, const CloudRule *
 }
 
 PetscInt cloud_at(const Neighbours *nodes, const CloudRule *rule, const PetscReal *x, const PetscReal *F,
-                  PetscInt *node, PetscReal *N, PetscReal *dN, CloudTally *tally)
+                  const CloudOrigin *origin, PetscInt *node, PetscReal *N, PetscReal *dN, CloudTally *tally)
 {
   const PetscInt dim = nodes->dim;
   const CloudSupport *support = &rule->support;
@@ -100,11 +119,13 @@ PetscInt cloud_at(const Neighbours *nodes, const CloudRule *rule, const PetscRea
   NeighboursMap room;
   Surroundings s;
   SupportReport report = {.level = SUPPORT_EMPTY};
+  PetscBool apart = PETSC_FALSE;
 
   const NeighboursMap *map = F && rule->follows ? cloud_stretch(dim, F, &room) : NULL;
   /* few points need to look beyond the radius */
   for (int far = radius_is_enough(support) ? 0 : 1; far < 2; ++far) {
     look_around(nodes, map, x, (far ? support->max_radius : support->radius) * rule->h, &s);
+    if (origin && rule->matter) apart = !keep_joined(dim, rule, origin, &s);
     report = choose_cloud(support, rule, map, F, x, dim, &s, chosen, N, dN);
     if (report.level == SUPPORT_NOMINAL) break;
   }
@@ -112,6 +133,7 @@ PetscInt cloud_at(const Neighbours *nodes, const CloudRule *rule, const PetscRea
   sort_cloud(dim, report.n, node, N, dN);
   ++tally->level[report.level];
   tally->nodes += report.n;
+  tally->entered += apart;
   return report.n;
 }
 
@@ -137,11 +159,22 @@ static PetscErrorCode Grow(Support *s, PetscInt nodes, PetscInt dim)
   PetscFunctionReturn(0);
 }
 
+/* Where a point was at the start: the middle of the cell that it was born in, since displacements may begin anew with a
+ * stage; of what knows no cell, places of nodes, where it was. */
+static PetscBool born_at(const CloudRule *rule, const Points *points, PetscInt p, PetscReal from[3])
+{
+  if (!rule->matter || (points->cell && points->cell[p] < 0)) return PETSC_FALSE;
+  for (PetscInt d = 0; d < points->dim; ++d)
+    from[d] = points->cell ? rule->matter->centre[points->cell[p] * points->dim + d]
+                           : point_real(points, POINT_X, p)[d] - point_real(points, POINT_U, p)[d];
+  return PETSC_TRUE;
+}
+
 PetscErrorCode SupportFromClouds(Support *s, const Points *points, const Neighbours *nodes, const CloudRule *rule)
 {
   const PetscInt dim = nodes->dim, n = points->n;
   const PetscBool has_F = points->real[POINT_F] != NULL;
-  PetscReal F[9];
+  PetscReal F[9], from[3];
   PetscInt entries = 0;
 
   PetscFunctionBeginUser;
@@ -154,8 +187,11 @@ PetscErrorCode SupportFromClouds(Support *s, const Points *points, const Neighbo
     s->point_start[p] = p;
     s->node_start[p] = s->value_start[p] = entries;
     if (has_F) point_F(points, p, F);
-    entries += cloud_at(nodes + point_field(points, p), rule, points->real[POINT_X] + (size_t)p * (size_t)dim,
-                        has_F ? F : NULL, s->node + entries, s->N + entries, s->dN + entries * dim, &s->tally);
+    if (!s->tally.entered) s->tally.first_entered = p;
+    const PetscBool born = born_at(rule, points, p, from);
+    const CloudOrigin origin = {.from = from, .field = point_field(points, p)};
+    entries += cloud_at(nodes + origin.field, rule, points->real[POINT_X] + (size_t)p * (size_t)dim, has_F ? F : NULL,
+                        born ? &origin : NULL, s->node + entries, s->N + entries, s->dN + entries * dim, &s->tally);
   }
   s->point_start[n] = n;
   s->node_start[n] = s->value_start[n] = entries;

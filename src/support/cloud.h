@@ -1,5 +1,6 @@
 /* Support of points that each have a cloud of nodes: those near them, chosen by a rule. */
 #pragma once
+#include "grid/cloud/matter.h"
 #include "grid/search/neighbours.h"
 #include "support/support.h"
 
@@ -7,9 +8,17 @@
 typedef struct {
   CloudBasis basis;
   CloudSupport support;
-  PetscReal h;       /* m: unit of their lengths */
-  PetscBool follows; /* the stretch of the material? */
+  PetscReal h;               /* m: unit of their lengths */
+  PetscBool follows;         /* the stretch of the material? */
+  const CloudMatter *matter; /* what joins nodes to a point; NULL: that they are near */
+  const PetscReal *start;    /* with it: where nodes were at the start, dim each */
 } CloudRule;
+
+/* Where a position's material was at the start. */
+typedef struct {
+  const PetscReal *from;
+  PetscInt field;
+} CloudOrigin;
 
 /* How clouds follow a point's stretch: along a principal direction of its F in which the material is drawn out by more
  * than a fifth, lengths count by as much less, so that the cloud keeps its nodes (docs/theory.md, "Meshfree bases").
@@ -24,6 +33,6 @@ const NeighboursMap *cloud_stretch_of(PetscBool follows, const Points *points, P
 PetscErrorCode SupportFromClouds(Support *support, const Points *points, const Neighbours *nodes,
                                  const CloudRule *rule);
 /* The cloud of one position: node and N have room for CLOUD_MAX_NODES, dN for dim times that;
- * returns the number of nodes. F: its deformation gradient, or NULL. */
+ * returns the number of nodes. F: its deformation gradient, or NULL. origin: NULL where nothing tells. */
 PetscInt cloud_at(const Neighbours *nodes, const CloudRule *rule, const PetscReal *x, const PetscReal *F,
-                  PetscInt *node, PetscReal *N, PetscReal *dN, CloudTally *tally);
+                  const CloudOrigin *origin, PetscInt *node, PetscReal *N, PetscReal *dN, CloudTally *tally);

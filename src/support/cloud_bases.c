@@ -9,6 +9,8 @@ static CloudRule cloud_rule(const BasisInput *in, const CloudSupport *usual)
   static const SupportRule rule[] = {SUPPORT_ADAPTIVE, SUPPORT_NEAREST, SUPPORT_FIXED};
   const BasisSpec *b = in->spec;
   CloudRule r = {.support = *usual, .h = in->grid->cloud->spacing, .follows = in->follows};
+  r.matter = in->start ? in->grid->cloud->matter : NULL;
+  r.start = in->start;
   r.support.rule = rule[b->choice];
   r.support.radius = b->radius;
   r.support.max_radius = PetscMax(b->max_radius, b->radius);

@@ -23,6 +23,8 @@ PetscErrorCode NodeGroupsDestroy(NodeGroups *groups);
 typedef struct {
   PetscInt level[SUPPORT_EMPTY + 1]; /* points of each level */
   PetscInt nodes;                    /* of all clouds together */
+  /* points that are nearer to a node of what no material joins to them than to any of theirs, and the first of them */
+  PetscInt entered, first_entered;
 } CloudTally;
 
 /* Groups first .. end - 1, all of as many nodes. A grid of one kind of cells has one run, a mixed

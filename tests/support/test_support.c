@@ -131,8 +131,8 @@ static void clouds_turn_with_the_material(void **state)
     }
     CALL(NeighboursCreate(2, 81, X, 0, NULL, NULL, 1, &nodes));
     const PetscReal x = 0.3, y = 0.4, at[2] = {c * x - s * y, s * x + c * y};
-    n[turned][0] = cloud_at(&nodes, &rule, at, F, node, N, dN, &tally);
-    n[turned][1] = cloud_at(&nodes, &rule, at, NULL, node, N, dN, &tally);
+    n[turned][0] = cloud_at(&nodes, &rule, at, F, NULL, node, N, dN, &tally);
+    n[turned][1] = cloud_at(&nodes, &rule, at, NULL, NULL, node, N, dN, &tally);
     CALL(NeighboursDestroy(&nodes));
   }
   CHECK(n[0][0] == n[1][0] && n[0][1] == n[1][1]);
@@ -160,7 +160,7 @@ static void clouds_follow_the_stretch(void **state)
     }
     CALL(NeighboursCreate(2, 121, X, 0, NULL, NULL, 1, &nodes));
     const PetscReal at[2] = {c * x - s * y, s * x + c * y};
-    n[k] = cloud_at(&nodes, &rule, at, F, node[k], N[k], dN[k], &tally);
+    n[k] = cloud_at(&nodes, &rule, at, F, NULL, node[k], N[k], dN[k], &tally);
     CALL(NeighboursDestroy(&nodes));
   }
   for (int k = 1; k < 3; ++k) {

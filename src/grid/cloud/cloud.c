@@ -21,6 +21,7 @@ static PetscErrorCode Destroy(Grid *grid)
   PetscCall(PetscFree((*cloud)->x0));
   PetscCall(PetscFree((*cloud)->obstacle));
   PetscCall(PetscFree((*cloud)->motion));
+  PetscCall(CloudMatterDestroy(&(*cloud)->matter));
   PetscCall(PetscFree((*cloud)->ghost_rank));
   PetscCall(PetscFree((*cloud)->ghost_index));
   PetscCall(PetscFree(*cloud));

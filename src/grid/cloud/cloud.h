@@ -6,6 +6,7 @@
  * register their arrays, and a change of ghosts or owners moves the contents. */
 #pragma once
 #include "base/table/table.h"
+#include "grid/cloud/matter.h"
 #include "grid/grid.h"
 
 #define CLOUD_MAX_FIELDS 32
@@ -29,7 +30,8 @@ typedef struct GridCloud {
   PetscReal *obstacle;
   /* Velocity fields: points find their nodes among those of their own alone; 1 where no bodies meet. */
   PetscInt n_motions;
-  PetscReal *motion; /* n_nodes: the field of each; NULL: there is one */
+  PetscReal *motion;   /* n_nodes: the field of each; NULL: there is one */
+  CloudMatter *matter; /* which places are joined through material; NULL: all that are near */
   PetscInt n_fields;
   CloudField field[CLOUD_MAX_FIELDS];
   PetscMPIInt *ghost_rank;  /* of each ghost: its owner, */
@@ -44,8 +46,9 @@ typedef struct {
   PetscInt n;
   PetscMPIInt *rank;
   PetscInt *index;
-  PetscInt *field; /* velocity field */
-  PetscReal *x;    /* n x dim */
+  PetscInt *field;  /* velocity field */
+  PetscReal *x;     /* n x dim */
+  PetscReal *start; /* n x dim: as cloud_start() */
 } RemoteNodes;
 
 /* What of a mesh becomes a cloud, for each of its owned nodes. */
@@ -78,6 +81,12 @@ static inline PetscInt cloud_origin(const Grid *grid, const Grid *mesh, PetscInt
 static inline PetscInt cloud_motion(const Grid *grid, PetscInt node)
 {
   return grid->cloud->motion ? (PetscInt)grid->cloud->motion[node] : 0;
+}
+
+/* Where a node was at the start; an obstacle is MATTER_ANYWHERE. */
+static inline PetscReal cloud_start(const Grid *grid, PetscInt node, PetscInt d)
+{
+  return grid->cloud->obstacle[node] > 0 ? MATTER_ANYWHERE : grid->cloud->x0[node * grid->dim + d];
 }
 
 /* Let *field.data (n_nodes x components, from PetscMalloc1) follow the nodes; without a name its contents

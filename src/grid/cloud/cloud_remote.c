@@ -5,7 +5,7 @@
 
 /* A node in flight. */
 typedef struct {
-  PetscReal x[3];
+  PetscReal x[3], start[3];
   PetscInt64 index, field;
 } Flight;
 
@@ -31,7 +31,10 @@ static void list_nodes(const Grid *grid, PetscMPIInt rank, PetscMPIInt size, Pet
       }
       Flight *c = &out[next[slot[r]]++];
       *c = (Flight){.index = i, .field = cloud_motion(grid, i)};
-      for (PetscInt d = 0; d < grid->dim; ++d) c->x[d] = grid->x[i * grid->dim + d];
+      for (PetscInt d = 0; d < grid->dim; ++d) {
+        c->x[d] = grid->x[i * grid->dim + d];
+        c->start[d] = cloud_start(grid, i, d);
+      }
     }
   }
 }
@@ -40,13 +43,17 @@ static PetscErrorCode Receive(const Grid *grid, const Exchange *e, const Flight 
 {
   PetscFunctionBeginUser;
   const PetscInt n = remote->n = e->from_start[e->n_from];
-  PetscCall(PetscMalloc4(n, &remote->rank, n, &remote->index, n, &remote->field, n * grid->dim, &remote->x));
+  PetscCall(PetscMalloc5(n, &remote->rank, n, &remote->index, n, &remote->field, n * grid->dim, &remote->x,
+                         n * grid->dim, &remote->start));
   for (PetscMPIInt m = 0; m < e->n_from; ++m)
     for (PetscInt k = e->from_start[m]; k < e->from_start[m + 1]; ++k) {
       remote->rank[k] = e->from[m];
       remote->index[k] = (PetscInt)in[k].index;
       remote->field[k] = (PetscInt)in[k].field;
-      for (PetscInt d = 0; d < grid->dim; ++d) remote->x[k * grid->dim + d] = in[k].x[d];
+      for (PetscInt d = 0; d < grid->dim; ++d) {
+        remote->x[k * grid->dim + d] = in[k].x[d];
+        remote->start[k * grid->dim + d] = in[k].start[d];
+      }
     }
   PetscFunctionReturn(0);
 }
@@ -86,7 +93,7 @@ PetscErrorCode GridCloudRemote(const Grid *grid, const PetscReal box[6], RemoteN
 PetscErrorCode GridCloudRemoteDestroy(RemoteNodes *remote)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree4(remote->rank, remote->index, remote->field, remote->x));
+  PetscCall(PetscFree5(remote->rank, remote->index, remote->field, remote->x, remote->start));
   remote->n = 0;
   PetscFunctionReturn(0);
 }

@@ -16,6 +16,7 @@ typedef struct {
   Neighbours *nodes; /* of each velocity field */
   PetscInt *ghost;   /* per candidate: local number, -1 if it is no ghost yet */
   PetscBool *use;    /* per candidate: does a cloud need it? */
+  PetscReal *start;  /* per node: as cloud_start() */
 } Search;
 
 /* The radius aimed at, m. */
@@ -87,6 +88,17 @@ static PetscErrorCode NodesByFieldDestroy(const Grid *grid, Neighbours **nodes)
   PetscFunctionReturn(0);
 }
 
+static PetscErrorCode FindStarts(const Grid *grid, Search *search)
+{
+  const PetscInt own = grid->n_owned * grid->dim, others = search->remote.n * grid->dim;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(own + others, &search->start));
+  for (PetscInt i = 0; i < own; ++i) search->start[i] = cloud_start(grid, i / grid->dim, i % grid->dim);
+  PetscCall(PetscArraycpy(search->start + own, search->remote.start, others));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode SearchBegin(const Discretisation *s, Search *search)
 {
   const Grid *grid = s->grid;
@@ -98,6 +110,7 @@ static PetscErrorCode SearchBegin(const Discretisation *s, Search *search)
   PetscCall(GridCloudRemote(grid, box, &search->remote));
   const PetscInt n = search->remote.n;
   PetscCall(NodesByField(grid, grid->n_owned, &search->remote, radius_of(s), &search->nodes));
+  PetscCall(FindStarts(grid, search));
   PetscCall(PetscMalloc1(n, &search->ghost));
   PetscCall(PetscCalloc1(n, &search->use));
   cloud_find_ghosts(grid, &search->remote, search->ghost);
@@ -112,6 +125,7 @@ static PetscErrorCode SearchEnd(const Grid *grid, Search *search)
   PetscCall(GridCloudRemoteDestroy(&search->remote));
   PetscCall(PetscFree(search->ghost));
   PetscCall(PetscFree(search->use));
+  PetscCall(PetscFree(search->start));
   PetscFunctionReturn(0);
 }
 
@@ -204,8 +218,9 @@ static PetscErrorCode Follow(Discretisation *s)
 static PetscErrorCode PlacesCreate(const Grid *grid, PetscInt n, Points *places)
 {
   PetscFunctionBeginUser;
-  *places = (Points){.dim = grid->dim, .components[POINT_X] = grid->dim};
+  *places = (Points){.dim = grid->dim, .components[POINT_X] = grid->dim, .components[POINT_U] = grid->dim};
   PetscCall(PetscMalloc1(n * grid->dim, &places->real[POINT_X]));
+  PetscCall(PetscMalloc1(n * grid->dim, &places->real[POINT_U]));
   if (grid->cloud->n_motions == 1) PetscFunctionReturn(0);
   places->components[POINT_FIELD] = 1;
   PetscCall(PetscMalloc1(n, &places->real[POINT_FIELD]));
@@ -215,7 +230,10 @@ static PetscErrorCode PlacesCreate(const Grid *grid, PetscInt n, Points *places)
 static void add_place(const Grid *grid, PetscInt node, Points *places)
 {
   const PetscInt n = places->n++;
-  for (PetscInt d = 0; d < grid->dim; ++d) places->real[POINT_X][n * grid->dim + d] = grid->x[node * grid->dim + d];
+  for (PetscInt d = 0; d < grid->dim; ++d) {
+    point_real(places, POINT_X, n)[d] = grid->x[node * grid->dim + d];
+    point_real(places, POINT_U, n)[d] = grid->x[node * grid->dim + d] - cloud_start(grid, node, d);
+  }
   if (places->components[POINT_FIELD]) places->real[POINT_FIELD][n] = (PetscReal)cloud_motion(grid, node);
 }
 
@@ -223,6 +241,7 @@ static PetscErrorCode PlacesDestroy(Points *places)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscFree(places->real[POINT_X]));
+  PetscCall(PetscFree(places->real[POINT_U]));
   PetscCall(PetscFree(places->real[POINT_FIELD]));
   PetscFunctionReturn(0);
 }
@@ -233,8 +252,12 @@ static PetscErrorCode GatherNodes(Discretisation *s, const Search *search)
 {
   const Grid *grid = s->grid;
   const Support *w = gmm_of(s)->nodes;
-  const BasisInput basis = {
-    .spec = &s->c->basis, .grid = grid, .nodes = search->nodes, .follows = clouds_follow(s), .on_hull = PETSC_TRUE};
+  const BasisInput basis = {.spec = &s->c->basis,
+                            .grid = grid,
+                            .nodes = search->nodes,
+                            .start = search->start,
+                            .follows = clouds_follow(s),
+                            .on_hull = PETSC_TRUE};
   Points places;
 
   PetscFunctionBeginUser;
@@ -304,6 +327,7 @@ PetscErrorCode GmmGather(Discretisation *s)
   PetscCall(Follow(s));
   PetscCall(SearchBegin(s, &search));
   basis.nodes = search.nodes;
+  basis.start = search.start;
   PetscCall(s->basis->support(&basis, s->points, s->support));
   PetscCall(s->basis->support(&basis, s->tracers, g->tracers));
   basis.on_hull = PETSC_TRUE;

@@ -195,49 +195,6 @@ static PetscErrorCode FitInterface(Model *m, const SurfaceInput *in, const Petsc
   PetscFunctionReturn(0);
 }
 
-/* Is a point of one body nearer to one of the other than both the reach of a cloud and that to a surface? */
-static PetscBool are_near(const Surface *a, const Surface *b, PetscReal reach)
-{
-  for (const SurfacePoint *p = a->point; p < a->point + a->n; ++p) {
-    SurfaceWalk walk = surface_walk(b, p->x, reach + b->reach);
-    for (const SurfacePoint *q; (q = surface_next(&walk));) {
-      const PetscReal r[3] = {q->x[0] - p->x[0], q->x[1] - p->x[1], q->x[2] - p->x[2]};
-      if (vector_dot(r, r) < PetscSqr(reach + q->reach)) return PETSC_TRUE;
-    }
-  }
-  return PETSC_FALSE;
-}
-
-/* Clouds reach through a thin body to one behind it that has the same field, and would tie both. */
-static PetscErrorCode WarnOfStrangers(const Model *m, const SurfaceInput *in, const PetscReal *bounds, const int *share,
-                                      Diag *diag)
-{
-  const PetscInt bodies = m->c->n_bodies;
-  PetscReal spacing;
-  Surface body[2];
-  PetscBool first;
-
-  PetscFunctionBeginUser;
-  PetscCall(GridSpacing(m->grid, m->points->n, m->points->cell, &spacing));
-  const PetscReal reach = m->c->basis.radius * spacing;
-  for (PetscInt a = 0; a < bodies; ++a)
-    for (PetscInt b = a + 1; b < bodies; ++b) {
-      if (case_field(m->c, a) != case_field(m->c, b) || case_interface(m->c, a, b, &first) >= 0) continue;
-      if (share[a * bodies + b] || share[b * bodies + a]) continue;
-      PetscCall(SurfaceGather(in, a, bounds + 6 * b, 2 * reach, body));
-      PetscCall(SurfaceGather(in, b, bounds + 6 * a, 2 * reach, body + 1));
-      if (are_near(body, body + 1, reach)) {
-        diag_warning(diag, "interfaces",
-                     "'%s' and '%s' are so near each other that clouds have nodes of both: they stick",
-                     m->c->bodies[a].name, m->c->bodies[b].name);
-        diag_hint(diag, "- {name: ..., between: [%s, %s]} gives each a field of its own", m->c->bodies[a].name,
-                  m->c->bodies[b].name);
-      }
-      for (int i = 0; i < 2; ++i) PetscCall(SurfaceClear(body + i));
-    }
-  PetscFunctionReturn(0);
-}
-
 /* What surfaces are gathered from; nodes are not wanted. */
 static SurfaceInput surface_input(const Model *m)
 {
@@ -269,7 +226,6 @@ PetscErrorCode InterfacesStart(Model *m, Diag *diag)
   PetscCall(PetscMalloc1(6 * m->c->n_bodies, &bounds));
   PetscCall(SurfaceBounds(&in, m->c->n_bodies, bounds));
   for (PetscInt k = 0; k < m->c->n_interfaces && tied < 0; ++k) PetscCall(FitInterface(m, &in, bounds, k, diag));
-  if (m->method->clouds) PetscCall(WarnOfStrangers(m, &in, bounds, share, diag));
   PetscCall(PetscFree(bounds));
   PetscCall(PetscFree(share));
   PetscFunctionReturn(0);

@@ -76,6 +76,25 @@ static void leave_cells(const Grid *mesh, Points *points)
   for (PetscInt p = 0; p < points->n; ++p) points->cell[p] = mesh->global_cell[points->cell[p]];
 }
 
+/* A follower on the rim of a body may be in the cell beside it: it is of that of the nearest point. */
+static PetscErrorCode StandInMatter(const Model *m, Points *followers)
+{
+  const Points *points = m->points;
+  PetscBool *full;
+  PetscReal square;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->grid->n_cells, &full));
+  for (PetscInt p = 0; p < points->n; ++p) full[points->cell[p]] = PETSC_TRUE;
+  for (PetscInt p = 0; p < followers->n; ++p) {
+    if (followers->cell[p] >= 0 && full[followers->cell[p]]) continue;
+    const PetscInt near = points_near(points, point_real(followers, POINT_X, p), &square);
+    if (near >= 0) followers->cell[p] = points->cell[near];
+  }
+  PetscCall(PetscFree(full));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelToCloud(Model *m)
 {
   Grid *cloud;
@@ -98,6 +117,10 @@ PetscErrorCode ModelToCloud(Model *m)
   PetscCall(GridSpacing(m->grid, m->points->n, m->points->cell, &source.spacing));
   PetscCall(GridCreateCloud(m->grid, &source, &cloud));
   PetscCall(BoundaryToCloud(m->boundary, m->grid, cloud, &boundary));
+  PetscCall(CloudMatterCreate(m->grid, source.spacing, source.n_motions, m->points->n, m->points->cell,
+                              source.n_motions > 1 ? m->points->real[POINT_FIELD] : NULL, &cloud->cloud->matter));
+  PetscCall(StandInMatter(m, m->tracers));
+  PetscCall(StandInMatter(m, m->loads->carriers));
   leave_cells(m->grid, m->points);
   leave_cells(m->grid, m->tracers);
   leave_cells(m->grid, m->loads->carriers);

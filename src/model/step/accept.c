@@ -95,6 +95,7 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
   PetscCall(ContactForces(m, dt));
   PetscCall(GuessLearn(m, dt));
   PetscCall(LimitWatch(m, dt));
+  PetscCall(NoteEntered(m));
   WeakFormInput in = weak_form_of(m, 0);
   note_flow(m, -1);
   PetscCall(PassedBegin(m, &before));

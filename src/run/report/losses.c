@@ -467,6 +467,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   PetscCall(WarnOfMovedLoads(m, diag));
   PetscCall(WarnOfShear(m, diag));
   PetscCall(WarnOfStretch(m, diag));
+  warn_of_entered(m, diag);
   PetscCall(WarnOfPull(m, diag));
   PetscCall(WarnOfPassed(m, diag));
   PetscCall(AdviseHangs(m, diag));

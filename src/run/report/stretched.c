@@ -1,6 +1,7 @@
-/* Clouds of wide functions in elastic material that is drawn out: zigzags of its nodes grow from step to step, and
- * forces fall with them (docs/theory.md, "Meshfree bases"). */
+/* What clouds do not see. In elastic material that is drawn out, those of wide functions: zigzags of its nodes grow from
+ * step to step, and forces fall with them (docs/theory.md, "Meshfree bases"). And what comes from elsewhere. */
 #include "run/report/stretched.h"
+#include "base/text.h"
 #include "support/cloud.h"
 
 #define GAMMA_LEAST 1.5    /* of maximum entropy, or 1 over the square of the effective radius */
@@ -33,4 +34,18 @@ PetscErrorCode WarnOfStretch(const Model *m, Diag *diag)
                (double)(100 * sum[1] / sum[0]));
   diag_hint(diag, "`basis: {lme: {}}`, or linear mls with its own `effective_radius`, is right to a stretch of 2");
   PetscFunctionReturn(0);
+}
+
+void warn_of_entered(const Model *m, Diag *diag)
+{
+  char at[80];
+  if (!m->entered.points) return;
+  diag_warning(
+    diag, "bodies",
+    "from t = %.3g s on parts that no material joins are in each other, first at %s m in '%s': clouds of gmm "
+    "do not reach from one to the other, and nothing stops them",
+    (double)m->entered.time, text_position(m->dim, m->entered.place, at), m->c->bodies[m->entered.body].name);
+  diag_hint(diag,
+            "bodies meet at `interfaces: [{name: ..., between: [...]}]`; parts of one body that are to meet are "
+            "bodies, too, which an interface with `contact: bonded` holds together elsewhere");
 }
