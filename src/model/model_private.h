@@ -361,6 +361,9 @@ void advise_late(const Model *model, Diag *diag);
 void advise_cones(const Model *model, Diag *diag);
 /* cells.c. Collective. The same of cells whose points do not hold a uniform stress. */
 PetscErrorCode AdviseCells(const Model *model, Diag *diag);
+/* contact/interfaces.c. Collective. share[a * n_bodies + b]: body a has a node of the mesh that is b's as well, on any
+ * rank; added to what is there. */
+PetscErrorCode SharingPairs(const Model *model, int *share);
 /* waves.c. Collective. The same of waves that the mixed formulation slows down. */
 PetscErrorCode AdviseWaves(const Model *model, Diag *diag);
 /* units.c. Collective. Warn of numbers that are no matter's in kg, m, s and Pa. */

@@ -609,4 +609,50 @@ warned "a cone about the axis" -- --set kinematics=axisymmetric
 warned "a cone that bears all" "bears any load" -- --set materials.m.friction_angle=45
 warned "a cone without friction" "friction_angle 0 and cohesion 2.309e+04 Pa" -- --set materials.m.friction_angle=0
 
+# --- cells that are flat, and layers that share nodes, of gmm ---
+cat >case.yaml <<'END'
+kinematics: plane-strain
+method: gmm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [2, 1]}, counts: [4, 8]}
+bodies:
+  - {name: soft, shape: {box: {min: [0, 0], max: [1, 1]}}, material: m}
+  - {name: stiff, shape: {box: {min: [1, 0], max: [2, 1]}}, material: s}
+materials:
+  m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0}
+  s: {law: neo-hookean, density: 1000, young: 2.9e6, poisson: 0}
+boundary: [{on: {x: 0}, fix: [x]}, {on: {y: 0}, fix: [y]}]
+loads: {tractions: [{on: {body: stiff, x: 2}, value: [1e4, 0]}]}
+measures: {ux: {displacement: x, of: {tracer: [2, 1]}}}
+END
+flat="warning: its cells are up to 4 times as long as wide, as at (0.25, 0.0625) m: clouds of gmm are round"
+for ranks in 1 2; do
+  expect "flat cells on $ranks" 0 on_ranks $ranks "$talus" check case.yaml
+  says err.txt "case.yaml:6:5: $flat" "case.yaml:7:5: warning: its cells"
+done
+warned "hardly flat cells" -- --set grid.counts='[4, 6]'
+warned "hardly flat cells of mls" "up to 3 times as long" -- --set grid.counts='[4, 6]' --set 'basis={mls: {}}'
+warned "square cells" -- --set grid.counts='[4, 2]' --set 'basis={mls: {}}'
+warned "flat cells of fem" -- --set method=fem
+warned "flat triangles" "times as long as wide" -- --set grid.cell=triangle --set 'bodies[0].points_per_cell=3' --set 'bodies[1].points_per_cell=3'
+for ranks in 1 2; do
+  expect "layers on $ranks" 0 on_ranks $ranks "$talus" check case.yaml --set grid.counts='[8, 4]' --set materials.s.young=1e8
+  says err.txt "case.yaml:7:5: warning: 'soft' and 'stiff' share nodes, and one is 100 times as stiff: clouds of gmm reach over the seam" \
+    "hint: - {name: ..., between: [soft, stiff], contact: bonded}"
+done
+warned "layers not so different" -- --set grid.counts='[8, 4]'
+warned "layers that are bonded" -- --set grid.counts='[8, 4]' --set materials.s.young=1e8 \
+  --set 'interfaces=[{name: seam, between: [soft, stiff], contact: bonded}]'
+
+# --- a load that is there at once, in statics: half of its work is stored ---
+at_once='loads.tractions[0].amplitude=[[0, 1], [1, 1]]'
+seam='interfaces=[{name: seam, between: [soft, stiff], contact: bonded}]'
+for way in "gmm $seam" "gmm interfaces=[]" "fem $seam"; do
+  set -- "${way%% *}" "${way#* }"
+  expect "a load at once, $way" 0 "$talus" run case.yaml --out run --force --quiet --set grid.counts='[8, 4]' --set method=$1 --set "$2" --set "$at_once"
+  says err.txt "the transfer to what stops or holds it took 50 %" "a load that is there at once works twice what the body stores in statics"
+done
+expect "a load that grows" 0 "$talus" run case.yaml --out run --force --quiet --set grid.counts='[8, 4]' --set "$seam"
+lacks err.txt "the transfer"
+
 finish

@@ -26,8 +26,7 @@ static void check_method(const Model *m, Diag *diag)
   }
 }
 
-/* share[a * n_bodies + b]: body a has a node that was b's as well, on any rank. */
-static PetscErrorCode SharingPairs(const Model *m, int *share)
+PetscErrorCode SharingPairs(const Model *m, int *share)
 {
   const Grid *grid = m->grid;
   const PetscInt nn = grid->nodes_per_cell, bodies = m->c->n_bodies;

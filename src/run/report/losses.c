@@ -171,6 +171,11 @@ static void warn_of_transfer(const Model *m, Diag *diag)
     share > 0 ? "took" : "gave", (double)(100 * PetscAbsReal(share)), (double)PetscAbsReal(taken),
     (double)m->most_energy);
   if (m->method->clouds && share < 0) hint_of_clouds(m, diag);
+  else if (!m->method->restores_grid && case_is_static(&m->c->analysis) && share > 0)
+    diag_hint(diag,
+              "a load that is there at once works twice what the body stores in statics, and the half of it stands "
+              "here; what was found is right. Without an amplitude it grows over the steps%s",
+              m->contact ? ". What contact that opens, closes or slides has in it, shorter steps lessen" : "");
   else if (implicit && m->space->transfer == transfers[0] && !materials_yield(m->c->n_materials, m->materials))
     diag_hint(
       diag,
