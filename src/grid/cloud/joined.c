@@ -2,9 +2,10 @@
 #include "basis/cloud/cloud.h"
 #include "grid/cloud/matter.h"
 
-/* A way round a corner may be so many times as long as the straight one: half round a hole are 1.57, round the end of a
- * slot of one cell a node beside it 1.4, the next 3. */
-#define DETOUR 1.5
+/* A way round a corner may be so many times as long as the straight one: down and up the sides of a notch of 60 degrees
+ * between two cells of a rim, which is no slot, are 2, half round a hole 1.57, round the end of a slot of one cell from
+ * the node beside it 3. */
+#define DETOUR 2
 
 static PetscReal distance(PetscInt dim, const PetscReal *a, const PetscReal *b)
 {

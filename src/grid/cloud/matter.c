@@ -4,6 +4,7 @@
 
 #define VOXELS 6          /* along the edge of a cell */
 #define SHIFT 0.3         /* voxels: sides of cells that stand along the axes are no sides of voxels */
+#define DEEP 6            /* layers; clouds reach no farther */
 #define MOST 2147483647.0 /* voxels */
 
 /* Samples of a cell stand no farther apart than voxels are wide. */
@@ -56,6 +57,27 @@ UNROLLED PetscBool holds(const PetscInt dim, const CloudMatter *m, PetscInt fiel
   return PETSC_FALSE;
 }
 
+/* Number of the block with these coordinates; -1: outside. */
+UNROLLED PetscInt64 block_at(const PetscInt dim, const CloudMatter *m, PetscInt field, const PetscInt *at)
+{
+  PetscInt64 block = field;
+  for (PetscInt d = dim - 1; d >= 0; --d) {
+    if (at[d] < 0 || at[d] >= m->blocks[d]) return -1;
+    block = block * m->blocks[d] + at[d];
+  }
+  return block;
+}
+
+/* Is all that is as near to v as the end of the way full? Most ways need no more. */
+UNROLLED PetscBool is_deep(const PetscInt dim, const CloudMatter *m, PetscInt field, const PetscReal *v,
+                           PetscReal longest)
+{
+  PetscInt at[3];
+  for (PetscInt d = 0; d < dim; ++d) at[d] = (PetscInt)v[d] / VOXELS;
+  const PetscInt64 block = block_at(dim, m, field, at);
+  return (PetscBool)(block >= 0 && longest <= VOXELS * ((PetscReal)m->depth[block] - 1));
+}
+
 /* No two samples of the way have a whole voxel between them. */
 UNROLLED PetscBool joins(const PetscInt dim, const CloudMatter *m, PetscInt field, const PetscReal *a,
                          const PetscReal *b)
@@ -64,6 +86,7 @@ UNROLLED PetscBool joins(const PetscInt dim, const CloudMatter *m, PetscInt fiel
   in_voxels(dim, m, a, v);
   in_voxels(dim, m, b, end);
   for (PetscInt d = 0; d < dim; ++d) longest = PetscMax(longest, PetscAbsReal(end[d] - v[d]));
+  if (is_deep(dim, m, field, v, longest)) return PETSC_TRUE;
   const PetscReal n = PetscCeilReal(longest);
   for (PetscInt d = 0; d < dim; ++d) end[d] = (end[d] - v[d]) / n;
   for (PetscReal i = 1; i < n; ++i) {
@@ -131,6 +154,47 @@ static PetscErrorCode Size(CloudMatter *m, const Grid *mesh, PetscInt n, const P
   PetscFunctionReturn(0);
 }
 
+static PetscBool is_full(const CloudMatter *m, PetscInt field, const PetscInt *at)
+{
+  const PetscInt planes = m->dim == 3 ? VOXELS : 1;
+  for (PetscInt k = 0; k < VOXELS * VOXELS * planes; ++k) {
+    const PetscInt ijk[3] = {k % VOXELS, k / VOXELS % VOXELS, k / (VOXELS * VOXELS)};
+    PetscReal v[3];
+    for (PetscInt d = 0; d < m->dim; ++d) v[d] = 0.5 + VOXELS * at[d] + ijk[d];
+    if (!holds(m->dim, m, field, v)) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
+/* Is a block beside it, across sides or corners, less deep than k? */
+static PetscBool is_beside(const CloudMatter *m, PetscInt field, const PetscInt *at, int k)
+{
+  for (PetscInt n = 0; n < (m->dim == 3 ? 27 : 9); ++n) {
+    const PetscInt other[3] = {at[0] + n % 3 - 1, at[1] + n / 3 % 3 - 1, at[2] + n / 9 - 1};
+    const PetscInt64 block = block_at(m->dim, m, field, other);
+    if (block < 0 || m->depth[block] < k) return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* Layer by layer, from the blocks that are not full. */
+static PetscErrorCode Depths(CloudMatter *m)
+{
+  PetscInt n = 1;
+
+  PetscFunctionBeginUser;
+  for (PetscInt d = 0; d < m->dim; ++d) n *= m->blocks[d] = (m->counts[d] + VOXELS - 1) / VOXELS;
+  PetscCall(PetscMalloc1(n * m->n_fields, &m->depth));
+  for (int k = 0; k <= DEEP; ++k)
+    for (PetscInt b = 0; b < n * m->n_fields; ++b) {
+      const PetscInt in = b % n, at[3] = {in % m->blocks[0], in / m->blocks[0] % m->blocks[1],
+                                          m->dim == 3 ? in / (m->blocks[0] * m->blocks[1]) : 0};
+      if (k == 0) m->depth[b] = is_full(m, b / n, at) ? DEEP : 0;
+      else if (m->depth[b] > k && is_beside(m, b / n, at, k)) m->depth[b] = (unsigned char)k;
+    }
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode Centres(CloudMatter *m, const Grid *mesh)
 {
   PetscInt last = -1, all;
@@ -164,6 +228,7 @@ static PetscErrorCode Fill(CloudMatter *m, const Grid *mesh, PetscInt n, const P
     fill_cell(m, grid_cell_type(mesh, cell[k]), x, field ? (PetscInt)field[k] : 0);
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, m->bits, (PetscMPIInt)bytes, MPI_UNSIGNED_CHAR, MPI_BOR, mesh->comm));
+  PetscCall(Depths(m));
   PetscCall(Centres(m, mesh));
   PetscFunctionReturn(0);
 }
@@ -192,6 +257,7 @@ PetscErrorCode CloudMatterDestroy(CloudMatter **matter)
   PetscFunctionBeginUser;
   if (!*matter) PetscFunctionReturn(0);
   PetscCall(PetscFree((*matter)->bits));
+  PetscCall(PetscFree((*matter)->depth));
   PetscCall(PetscFree((*matter)->centre));
   PetscCall(PetscFree(*matter));
   PetscFunctionReturn(0);

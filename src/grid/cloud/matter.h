@@ -14,7 +14,10 @@ typedef struct {
   PetscReal low[3], size; /* voxels: the corner of the first, and their edge, m */
   PetscInt counts[3];
   unsigned char *bits; /* a bit for each voxel, field by field: do cells of this velocity field fill it? */
-  PetscReal *centre;   /* of each cell of the mesh, by its number in the file: dim */
+  /* of blocks of voxels, as wide as a cell: how many layers of blocks that are full lie around, with itself */
+  PetscInt blocks[3];
+  unsigned char *depth;
+  PetscReal *centre; /* of each cell of the mesh, by its number in the file: dim */
 } CloudMatter;
 
 /* Collective. What the cells listed fill, each for its velocity field (NULL: there is one); spacing: of the cloud. NULL
