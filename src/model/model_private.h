@@ -177,8 +177,9 @@ PetscErrorCode StepStartRestore(Model *model, const StepStart *start, StepReport
 /* step/prepare.c. Collective. Which nodes have unknowns, on which ranks, and which are held; then
  * what a step changes before its solve. */
 PetscErrorCode PrepareUnknowns(Model *model, StepStart *start, StepReport *report);
-/* step/pseudo_time.c. Collective. The same of a step that Newton's method has lost in a search for the factor of safety,
- * after PrepareStep: converged is what rests; report->leap says of what slides or flows that it does. newton.iterations: of all. */
+/* step/pseudo_time.c. Collective. The same of a step that Newton's method has lost in a search for the factor of
+ * safety, after PrepareStep: converged is what rests; report->leap says of what slides or flows that it does.
+ * newton.iterations: of all. */
 PetscErrorCode PseudoTimeSolve(Model *m, StepProblem *p, const LinearProblem *linear, StepReport *report);
 /* step/solve.c. Collective. The increments of a step of dt, or of halves of it: until Newton converges,
  * somebody interrupts it, or the step is too small. */
@@ -311,8 +312,8 @@ PetscReal unheld_open_surface(const Model *model);
 /* start/unheld.c. Collective. analysis.unheld: hold: once bodies have arrived (see CheckHeld) what nothing holds is
  * told, and a mistake where the loads of the first step push it. */
 PetscErrorCode UnheldCheck(Model *model, PetscBool arrived, Diag *diag);
-/* Collective. Otherwise: a mistake where nothing keeps a body from turning, in walls or sides that are smooth and round,
- * and loads leave it as it lies. */
+/* Collective. Otherwise: a mistake where nothing keeps a body from turning, in walls or sides that are smooth and
+ * round, and loads leave it as it lies. */
 PetscErrorCode UnheldTurning(Model *model, Diag *diag);
 /* Collective. After mark_fixed, in each step: as few directions of nodes as hold it. */
 PetscErrorCode UnheldHold(Model *model);

@@ -122,7 +122,7 @@ static void clouds_turn_with_the_material(void **state)
     const PetscReal F[9] = {c * stretch, -s, 0, s * stretch, c, 0, 0, 0, 1};
     PetscReal X[2 * 81], N[CLOUD_MAX_NODES], dN[3 * CLOUD_MAX_NODES];
     PetscInt node[CLOUD_MAX_NODES];
-    CloudTally tally = {{0}, 0};
+    CloudTally tally = {0};
     Neighbours nodes;
     for (int k = 0; k < 81; ++k) {
       const PetscReal x = stretch * (k % 9 - 4), y = k / 9 - 4;
@@ -152,7 +152,7 @@ static void clouds_follow_the_stretch(void **state)
   for (int k = 0; k < 3; ++k) {
     const PetscReal F[9] = {c * stretch[k], -s, 0, s * stretch[k], c, 0, 0, 0, 3}, x = 0.3 * stretch[k], y = 0.4;
     PetscReal X[2 * 121];
-    CloudTally tally = {{0}, 0};
+    CloudTally tally = {0};
     Neighbours nodes;
     for (int i = 0; i < 121; ++i) {
       X[2 * i] = c * stretch[k] * (i % 11 - 5) - s * (i / 11 - 5);

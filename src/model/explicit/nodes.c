@@ -159,9 +159,9 @@ static PetscReal hold(const Model *m, const Held *h, PetscReal *v, PetscReal cha
   return by;
 }
 
-/* Half of the work of loads over the substep that ends, with the forces that they have now: those of its start have had
- * the other half, so that what varies or turns meanwhile has the mean of both. The way is that of the points; where they
- * go as they are strained, held nodes go as prescribed. */
+/* Half of the work of loads over the substep that ends, with the forces that they have now: those of its start have
+ * had the other half, so that what varies or turns meanwhile has the mean of both. The way is that of the points; where
+ * they go as they are strained, held nodes go as prescribed. */
 KERNEL void end_work(const int dim, Model *m, Explicit *e)
 {
   PetscReal power = 0, change[3];

@@ -139,8 +139,8 @@ static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *d
   if (m->strength.lost) {
     PetscCall(RunDirLog(dir,
                         "warning = Newton's method lost its way before anything slid: no factor is found, it is "
-                        "larger (another mesh, formulation, points_per_cell, a dilatancy angle, or a larger Poisson's ratio "
-                        "tells)"));
+                        "larger (another mesh, formulation, points_per_cell, dilatancy angle, or a larger "
+                        "Poisson's ratio tells)"));
     PetscCall(RunDirLog(dir, "factor of safety > %.4g", (double)stable));
     PetscFunctionReturn(0);
   }

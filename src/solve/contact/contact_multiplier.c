@@ -327,7 +327,8 @@ PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt chan
   }
   PetscCall(MPIU_Allreduce(worst, of_all, 8, MPIU_REAL, MPIU_MAX, scene->grid->comm));
   s->begins = of_all[7] == 0;
-  const PetscReal all = PetscMax(of_all[0], of_all[4]), closed = s->share.asked * closed_by(s, change, of_all[6]);
+  const PetscReal all = PetscMax(of_all[0], of_all[4]);
+  const PetscReal closed = s->begins ? s->share.asked * closed_by(s, change, of_all[6]) : CLOSED * s->length;
   const PetscBool slow = change > 0 && all > STALLS * s->worst, soft = of_all[1] > closed;
   const PetscBool stalls = slow && !soft && of_all[3] <= ALLOWED * s->length;
   const PetscBool stay = of_all[0] <= allowed(s, change, of_all[2], of_all[5], of_all[6], 1) &&

@@ -1,8 +1,8 @@
 /* How walls with mass go on with a stage: one that comes begins as the stage says. One that was there stays where it is
- * unless it is drawn anew, and keeps its velocity and spin, whatever its mass is now, but for what the stage says where the
- * one before said nothing, or in other numbers. */
-#include <string.h>
+ * unless it is drawn anew, and keeps its velocity and spin, whatever its mass is now, but for what the stage says where
+ * the one before said nothing, or in other numbers. */
 #include "model/stage/stage_private.h"
+#include <string.h>
 
 /* The same wall in the stage before, if it was there. */
 static const RigidWall *wall_before(const Model *before, const char *name)
