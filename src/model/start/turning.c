@@ -124,7 +124,7 @@ PetscErrorCode UnheldTurning(Model *m, Diag *diag)
   if (m->c->analysis.type != ANALYSIS_STATIC || m->method->clouds || m->c->n_interfaces ||
       (m->contact && m->contact->n_rigid))
     PetscFunctionReturn(0);
-  for (PetscInt k = 0; k < m->c->n_walls; ++k) /* one that comes later may hold it */
+  for (PetscInt k = 0; m->contact && k < m->c->n_walls; ++k) /* one that comes later may hold it */
     if (!wall_comes(m->contact->walls, k, m->time)) PetscFunctionReturn(0);
   PetscCall(NodalForcesBegin(&m->forces, &scene));
   PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, m->nodes->external));

@@ -27,7 +27,7 @@
 #define BALANCED 1e-2
 #define FAR_LESS 1e-2
 #define AT_REST 2
-#define MOST 120
+#define MOST 600 /* iterations */
 /* What has gone so many times as far as when it was looked at last, and lacks so much of what it lacked then, flows:
  * resisting no more than that, it would come to rest after many times the way, if ever. */
 #define FARTHER 4
@@ -192,7 +192,7 @@ PetscErrorCode PseudoTimeSolve(Model *m, StepProblem *p, const LinearProblem *li
 
   PetscFunctionBeginUser;
   PetscCall(Create(m, &t));
-  for (PetscInt k = 0; k < MOST && t.waves > LEAST_WAVES; ++k) {
+  while (iterations < MOST && t.waves > LEAST_WAVES) {
     const PetscBool rested = t.rests;
     PetscCall(Seek(m, p, linear, &t, report));
     iterations += newton->iterations;

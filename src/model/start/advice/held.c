@@ -325,12 +325,13 @@ PetscErrorCode ModelWarnLoose(Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   if (!m->contact || m->c->analysis.type != ANALYSIS_STATIC || !m->step) PetscFunctionReturn(0);
+  Contact *contact = m->contact;
   if (holds && !m->unheld.dof) PetscFunctionReturn(0); /* no step was left to take */
   PetscCall(ModelInitialise(m));
   PetscCall(NodalForcesBegin(&m->forces, &scene));
-  PetscCall(ContactIsOver(m->contact, m->comm));
+  PetscCall(ContactIsOver(contact, m->comm));
   PetscCall(TellLoose(m, END, &told, diag));
   if (!told && !holds) PetscCall(TellLines(m, END, diag));
-  m->contact->least = 0;
+  contact->least = 0;
   PetscFunctionReturn(0);
 }
