@@ -19,6 +19,8 @@ PetscErrorCode ModelBalance(Model *model, StepReport *report);
 PetscErrorCode ModelRegrid(Model *model, Grid *grid, PetscInt *moved);
 /* Is it a case of what a prescribed displacement presses down until the ground gives way? */
 PetscBool model_is_pressed(const Model *model);
+/* step/guess.c. Does the node have inertia of its own: do points touch it, and is it no twin of another? */
+PetscBool node_moves(const Model *model, PetscInt node);
 /* step/guess.c. From where Newton may start: as inertia alone would bring, like the step before, from
  * rest. */
 typedef enum { GUESS_INERTIA, GUESS_PREVIOUS, GUESS_REST, GUESS_GRIPPED, GUESS_N } FirstGuess;

@@ -11,6 +11,11 @@
 #include "grid/cloud/cloud.h"
 #include "model/model_private.h"
 
+PetscBool node_moves(const Model *m, PetscInt node)
+{
+  return (PetscBool)(m->nodes->touched[node] && !(m->method->clouds && cloud_is_twin(m->grid, node)));
+}
+
 /* Only nodes that stay where they are have increments that mean something one step later; those of
  * a mesh know their own velocity. */
 PetscBool guess_follows(const Model *m)
@@ -59,7 +64,7 @@ static PetscReal inertia_alone(const Model *m, PetscReal dt, PetscInt i)
 static void guess_inertia(const Model *m, PetscReal dt, PetscReal *du)
 {
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
-    const PetscBool moves = m->nodes->touched[node] && !(m->method->clouds && cloud_is_twin(m->grid, node));
+    const PetscBool moves = node_moves(m, node);
     for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i) du[i] = moves ? inertia_alone(m, dt, i) : 0;
   }
 }

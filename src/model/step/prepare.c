@@ -194,7 +194,7 @@ static void set_history(Model *m, PetscReal dt, const PetscReal *g)
   for (PetscInt i = 0; i < dofs; ++i) n->du[i] = 0;
   m->scheme->end(analysis, dt, dofs, n->du, n->v, n->a, n->v1, n->a1);
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
-    if (!n->touched[node] || (m->method->clouds && cloud_is_twin(m->grid, node))) continue;
+    if (!node_moves(m, node)) continue;
     for (PetscInt d = 0, i = node * dim; d < dim; ++d, ++i) {
       const PetscReal v = n->v[i] + solved * (n->v1[i] - n->v[i]);
       n->history[i] = (1 - w.lag) * n->a1[i] + w.lag * n->a[i] + analysis->damping * v - g[d];

@@ -8,7 +8,6 @@
  * forces are farther from balance than before. What stands comes to rest, and c0 is taken away; what does not goes
  * farther than what stands would, or on and on for as much as it lacks. Strains are those since the start of the step:
  * which of several equilibria is found may depend on the way, and nothing else does. */
-#include "grid/cloud/cloud.h"
 #include "model/model_private.h"
 
 /* cells that a wave crosses: Newton's method converges in nearly all of dynamics with the first; with the least it will
@@ -77,7 +76,7 @@ static void look_ahead(PetscInt n, PseudoTime *t)
 static void hold_back(Model *m, PetscReal inertia, const PetscReal *to)
 {
   for (PetscInt node = 0; node < m->grid->n_nodes; ++node) {
-    if (!m->nodes->touched[node] || (m->method->clouds && cloud_is_twin(m->grid, node))) continue;
+    if (!node_moves(m, node)) continue;
     for (PetscInt d = 0, i = node * m->dim; d < m->dim; ++d, ++i)
       m->nodes->history[i] = -m->gravity[d] - inertia * to[i];
   }

@@ -83,7 +83,7 @@ static PetscErrorCode OrderGuesses(Model *m, PetscReal dt, StepProblem *p, First
 
 /* Has Newton's method lost its way in a try of a search for the factor of safety? What goes too far is another thing;
  * walls with mass have no inertia in statics that would hold them back; and where pressures at nodes lock what dilates
- * inside a cell some of it flows in pseudo-time, too, long before anything fails (advice/strength.c). */
+ * inside a cell some of it flows in pseudo-time, too, long before anything fails (docs/decisions.md, 263). */
 static PetscBool is_lost(const Model *m, const StepReport *report)
 {
   const PetscBool lost = (PetscBool)(!report->newton.converged && !report->newton.interrupted && !report->leap[0]);
