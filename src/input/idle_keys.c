@@ -13,7 +13,8 @@
 typedef PetscBool Works(const Case *c, PetscInt i);
 
 static PetscBool has_inertia(const Case *c, PetscInt i) { return (void)i, !case_is_static(&c->analysis); }
-/* Of a body: looked at in the stage with which it comes alone, since it has nothing left of it later. */
+/* Of a body, or a wall with mass: looked at in the stage with which it comes alone, since it has nothing left of it
+ * later. */
 static PetscBool starts(const Case *c, PetscInt i) { return has_inertia(c, i); }
 static PetscBool is_explicit(const Case *c, PetscInt i) { return (void)i, c->analysis.type == ANALYSIS_EXPLICIT; }
 static PetscBool has_springs(const Case *c, PetscInt i)
@@ -134,6 +135,8 @@ static const IdleKey keys[] = {
    "`displacement`, `velocity` and `rotation` have an amplitude; stages let go (`absent: true`)"},
   {"bodies", "velocity", starts, NO_INERTIA},
   {"bodies", "spin", starts, NO_INERTIA},
+  {"walls", "mass.velocity", starts, NO_INERTIA},
+  {"walls", "mass.spin", starts, NO_INERTIA},
 };
 
 /* What chooses how a case is computed: a key that was there before somebody (--set, a series, a sweep) chose anew was
@@ -244,20 +247,31 @@ static const YamlNode *find(const Search *s, const IdleKey *key, PetscInt k, Pet
   return list && list->kind == YAML_SEQUENCE && i < list->n ? node_at(list->child[i], key->key) : NULL;
 }
 
-/* In the stage with which body i comes, k or a later one. */
-static PetscBool starts_moving(const Search *s, PetscInt k, PetscInt i)
+static PetscInt entries_of(const Case *c, const char *list)
 {
-  for (PetscInt j = k; j < case_stages(s->c); ++j) {
-    const Case *c = case_stage(s->c, j);
-    if (i < c->n_bodies && !c->bodies[i].absent) return starts(c, i);
-  }
+  if (!list) return 1;
+  if (!strcmp(list, "bodies")) return c->n_bodies;
+  return !strcmp(list, "walls") ? c->n_walls : c->n_boundary;
+}
+
+static PetscBool is_there(const Case *c, const char *list, PetscInt i)
+{
+  if (i >= entries_of(c, list)) return PETSC_FALSE;
+  return (PetscBool) !(strcmp(list, "walls") ? c->bodies[i].absent : c->walls[i].absent);
+}
+
+/* In the stage with which the entry comes, k or a later one. */
+static PetscBool starts_moving(const Search *s, const char *list, PetscInt k, PetscInt i)
+{
+  for (PetscInt j = k; j < case_stages(s->c); ++j)
+    if (is_there(case_stage(s->c, j), list, i)) return starts(case_stage(s->c, j), i);
   return PETSC_TRUE;
 }
 
 /* Has it an effect in the stage, or in a later one that still has it? */
 static PetscBool works_from(const Search *s, const IdleKey *key, PetscInt k, PetscInt i)
 {
-  if (key->works == starts) return starts_moving(s, k, i);
+  if (key->works == starts) return starts_moving(s, key->list, k, i);
   for (PetscInt j = k; j < case_stages(s->c); ++j) {
     const YamlNode *node = find(s, key, j, i);
     if (node && node->stage == k && key->works(case_stage(s->c, j), i)) return PETSC_TRUE;
@@ -319,8 +333,7 @@ PetscErrorCode TellIdleKeys(const YamlDocument *document, const Case *c, Diag *d
     const Case *stage = case_stage(c, k);
     if (c->n_stages) diag_of_stage(diag, k, c->stages[k].name);
     for (size_t n = 0; n < PETSC_STATIC_ARRAY_LENGTH(keys); ++n) {
-      const char *list = keys[n].list;
-      const PetscInt entries = !list ? 1 : !strcmp(list, "bodies") ? stage->n_bodies : stage->n_boundary;
+      const PetscInt entries = entries_of(stage, keys[n].list);
       for (PetscInt i = 0; i < entries; ++i) look_at(&s, keys + n, k, i);
     }
     tell_materials(&s, k);

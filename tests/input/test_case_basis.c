@@ -267,6 +267,9 @@ static void Idle(void **state)
 #define SWING(more) HEAD("mpm", "dynamic", more)
 #define QUICK(more) HEAD("mpm", "explicit", more)
 #define FOLLOWS "kinematics: plane-strain\nmethod: fem\nanalysis: {type: dynamic, end: 1, step: 0.1}\n"
+#define ABOVE "{name: lid, shape: {box: {min: [0, 1], max: [2, 2]}}, mass: {mass: 1"
+#define LID "walls:\n  - " ABOVE
+#define THEN "stages: [{name: a}, {name: b, analysis: {type: dynamic, end: 1, step: 0.1}"
 #define STABLE "stabilisation: {stiffness: 1e-5, curvature: 0.3, follow: 0.3, mass: 0.3, inertia: 0.3}\n"
   static const struct {
     const char *text, *set, *keys[8];
@@ -318,6 +321,15 @@ static void Idle(void **state)
      {"bodies[0].velocity"}},
     {STILL("") BEAM(", velocity: [1, 0], absent: true") "stages: [{name: a}, {name: b, analysis: {type: dynamic, end: "
                                                         "1, step: 0.1}, bodies: [{name: beam, absent: false}]}]\n",
+     NULL,
+     {NULL}},
+    /* so does a wall with mass, whose motion a later stage may say */
+    {STILL("") BEAM("") LID ", velocity: [1, 0], spin: 2}}\n" THEN "}]\n",
+     NULL,
+     {"walls[0].mass.velocity", "walls[0].mass.spin"}},
+    {STILL("") BEAM("") LID "}}\n" THEN ", walls: [" ABOVE ", velocity: [1, 0], spin: 2}}]}]\n", NULL, {NULL}},
+    {STILL("") BEAM("") LID ", velocity: [1, 0], spin: 2}, absent: true}\n" THEN
+                            ", walls: [{name: lid, absent: false}]}]\n",
      NULL,
      {NULL}},
     {STILL(", damping: 2") BEAM(
