@@ -296,11 +296,11 @@ static void forces_at(Model *m, StepProblem *p, PetscReal h, System *system, Vec
   CALL(SystemFromNodes(m->system, m->nodes->force, 0, m->dim, out));
 }
 
-/* Of a ball without friction, or of a slope with: what turns the plane of the shear is left out (decision 106). */
+/* Of a rough ball, or a rough slope. */
 static void check_tangent(const Kinematics *kinematics, const char *formulation, CellType cell, PetscBool round)
 {
   Bench b;
-  WallSpec wall = {.name = (char *)"wall"};
+  WallSpec wall = {.name = (char *)"wall", .contact = CONTACT_FRICTION, .friction = 0.3};
   StepProblem p;
   Vec x, y, plus, minus;
   PetscReal off, size;
@@ -310,11 +310,7 @@ static void check_tangent(const Kinematics *kinematics, const char *formulation,
   b.c.formulation = (char *)formulation;
   b.c.mixed.stabilisation = 8;
   if (round) wall.shape = (Shape){.kind = SHAPE_BALL, .centre = {0, -2, 0}, .radius = 2};
-  else {
-    wall.shape = (Shape){.kind = SHAPE_HALF_SPACE, .normal = {0.1, 1, 0}};
-    wall.contact = CONTACT_FRICTION;
-    wall.friction = 0.3;
-  }
+  else wall.shape = (Shape){.kind = SHAPE_HALF_SPACE, .normal = {0.1, 1, 0}};
   b.c.n_walls = 1;
   b.c.walls = &wall;
   bench_motion(&b, 1, 1, MOTION_FIXED, 7);
