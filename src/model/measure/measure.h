@@ -110,6 +110,12 @@ static inline PetscReal measure_solid_volume(const Model *m, PetscInt p)
 {
   return PetscMin(1, m->points->real[POINT_J][p]) * m->points->real[POINT_VOLUME][p];
 }
+/* Its section in two dimensions, m2: of a ring without the circle. */
+static inline PetscReal measure_solid_area(const Model *m, PetscInt p)
+{
+  const PetscReal x = point_real(m->points, POINT_X, p)[0];
+  return measure_solid_volume(m, p) / PetscMax(kinematics_weight(m->c->kinematics, x), PETSC_SMALL);
+}
 /* Unit vectors against gravity (without: y) and to the right of it, in two dimensions. */
 void measure_up(const Model *m, PetscReal right[2], PetscReal up[2]);
 

@@ -37,12 +37,6 @@ void measure_up(const Model *m, PetscReal right[2], PetscReal up[2])
   right[1] = -up[0];
 }
 
-static PetscReal point_area(const Model *m, PetscInt p)
-{
-  const PetscReal x = point_real(m->points, POINT_X, p)[0];
-  return measure_solid_volume(m, p) / PetscMax(kinematics_weight(m->c->kinematics, x), PETSC_SMALL);
-}
-
 /* The side of the mean domain of a point; 0 if there are none. */
 static PetscErrorCode MeanSide(const Model *m, const MeasureSpec *s, PetscReal *side)
 {
@@ -52,7 +46,7 @@ static PetscErrorCode MeanSide(const Model *m, const MeasureSpec *s, PetscReal *
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal share = measure_share(m, s, body, p);
-    if (share > 0) sum[0] += share * point_area(m, p), sum[1] += share;
+    if (share > 0) sum[0] += share * measure_solid_area(m, p), sum[1] += share;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
   *side = sum[1] > 0 ? PetscSqrtReal(sum[0] / sum[1]) : 0;
@@ -103,8 +97,8 @@ static PetscErrorCode RasterFill(Raster *r, const Model *m, const MeasureSpec *s
   PetscCall(PetscCalloc1(n, &r->fill));
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal *x = point_real(m->points, POINT_X, p), share = measure_share(m, s, body, p);
-    if (share > 0) raster_add(r, x, share * point_area(m, p));
-    if (share > 0 && mirror) raster_add(r, (PetscReal[]){-x[0], x[1]}, share * point_area(m, p));
+    if (share > 0) raster_add(r, x, share * measure_solid_area(m, p));
+    if (share > 0 && mirror) raster_add(r, (PetscReal[]){-x[0], x[1]}, share * measure_solid_area(m, p));
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, r->fill, (PetscMPIInt)n, MPIU_REAL, MPI_SUM, m->comm));
   PetscFunctionReturn(0);

@@ -12,11 +12,9 @@
 /* Places of the samples along each axis, in SAMPLESths from the middle: the opposite of one is another. */
 static const PetscInt multiplier[2][3] = {{1, 12, 0}, {1, 5, 25}};
 
-static PetscReal domain_side(const Model *m, PetscInt p, const PetscReal *x)
+static PetscReal domain_side(const Model *m, PetscInt p)
 {
-  const PetscReal volume = measure_solid_volume(m, p);
-  return m->dim == 3 ? PetscCbrtReal(volume)
-                     : PetscSqrtReal(volume / PetscMax(kinematics_weight(m->c->kinematics, x[0]), PETSC_SMALL));
+  return m->dim == 3 ? PetscCbrtReal(measure_solid_volume(m, p)) : PetscSqrtReal(measure_solid_area(m, p));
 }
 
 /* Sample k of an image: bit 0 changes x and y, the others mirror all axes but the last. */
@@ -31,7 +29,7 @@ static void sample_at(PetscInt dim, PetscInt k, PetscInt image, PetscReal offset
 
 PetscReal measure_share_in(const Model *m, const Shape *shape, PetscInt p)
 {
-  const PetscReal *x = point_real(m->points, POINT_X, p), side = domain_side(m, p, x);
+  const PetscReal *x = point_real(m->points, POINT_X, p), side = domain_side(m, p);
   const PetscReal reach = 0.5 * side * PetscSqrtReal((PetscReal)m->dim);
   const PetscInt images = 1 << m->dim;
   PetscInt hits = 0;

@@ -1,9 +1,10 @@
-/* The free surface of a body in two dimensions: height over x, from the volume of its points.
+/* The free surface of a body in two dimensions: height over x, from the sections of its points.
  *
- * Each point shares its volume between the two nearest stations by linear weights, so that the
- * profile integrates to the volume of the body's material (J at most 1) exactly and does not jump
- * when a point crosses a station. Stations stand one cell apart from the grid's lowest x on. Where
- * x is a radius the outer stations stand for wider rings. */
+ * Each point shares its area between the two nearest stations by linear weights, so that the profile
+ * integrates to the section of the body's material (J at most 1) exactly and does not jump when a point
+ * crosses a station. Stations stand one cell apart from the grid's lowest x on. Rings are weighed by
+ * their sections, too: their volumes are quadratic in x beside the axis, where no two points a cell
+ * integrate them. */
 #include "model/measure/measure.h"
 
 typedef struct {
@@ -19,13 +20,8 @@ static PetscReal station_spacing(const Model *m)
   return m->grid->smallest;
 }
 
-/* What one m of height above station i holds, m2: the integral of its weights over x, or over rings. */
-static PetscReal station_area(const Model *m, const Profile *s, PetscInt i)
-{
-  const PetscReal half = i == 0 || i == s->n - 1 ? 0.5 : 1;
-  const PetscReal inward = i == 0 ? s->dx / 3 : i == s->n - 1 ? -s->dx / 3 : 0; /* middle of half a hat */
-  return half * s->dx * kinematics_weight(m->c->kinematics, s->x0 + (PetscReal)i * s->dx + inward);
-}
+/* What one m of height above station i holds, m2: the outer ones have half a hat. */
+static PetscReal station_width(const Profile *s, PetscInt i) { return (i == 0 || i == s->n - 1 ? 0.5 : 1) * s->dx; }
 
 static PetscErrorCode ProfileCreate(const Model *m, const MeasureSpec *spec, Profile *s)
 {
@@ -37,16 +33,16 @@ static PetscErrorCode ProfileCreate(const Model *m, const MeasureSpec *spec, Pro
   s->n = (PetscInt)PetscCeilReal((m->grid->max[0] - s->x0) / s->dx - 1e-9) + 1;
   PetscCall(PetscCalloc1(s->n, &s->height));
   for (PetscInt p = 0; p < m->points->n; ++p) {
-    const PetscReal volume = measure_share(m, spec, body, p) * measure_solid_volume(m, p);
-    if (volume == 0) continue;
+    const PetscReal area = measure_share(m, spec, body, p) * measure_solid_area(m, p);
+    if (area == 0) continue;
     const PetscReal at = (point_real(m->points, POINT_X, p)[0] - s->x0) / s->dx;
     const PetscInt i = PetscMax(0, PetscMin(s->n - 2, (PetscInt)PetscFloorReal(at)));
     const PetscReal share = PetscMax(0, PetscMin(1, at - (PetscReal)i));
-    s->height[i] += (1 - share) * volume;
-    s->height[i + 1] += share * volume;
+    s->height[i] += (1 - share) * area;
+    s->height[i + 1] += share * area;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->height, (PetscMPIInt)s->n, MPIU_REAL, MPI_SUM, m->comm));
-  for (PetscInt i = 0; i < s->n; ++i) s->height[i] /= station_area(m, s, i);
+  for (PetscInt i = 0; i < s->n; ++i) s->height[i] /= station_width(s, i);
   PetscFunctionReturn(0);
 }
 
@@ -135,5 +131,5 @@ const Measure measure_surface = {
   .key = "surface",
   .takes = MEASURE_WORD,
   .only_2d = PETSC_TRUE,
-  .number = {.unit = "m or deg", .help = "free surface of a body: from the volume above x, in cells of the grid"},
+  .number = {.unit = "m or deg", .help = "free surface of a body: from the area above x, in cells of the grid"},
   .words = words};
