@@ -280,13 +280,27 @@ static void test_ball(void **state)
   ball(&kinematics_3d, 0.2, 5e-4, 0.1); /* points in slivers are off by more than their pressure */
 }
 
+/* The body becomes a mesh of its own of the same box, of which no line is a line of the grid. */
+static void bring_mesh(Bench *b, CellType cell)
+{
+  const GridSpec box = b->c.grid;
+  const Shape *shape = &b->body[0].shape;
+  bench_grid(b, shape->min, shape->max, 0.2);
+  b->c.grid.cell = cell;
+  bench_distort(b, 0, 0, NULL);
+  b->c.grid = box;
+  b->body[0].mesh = b->mesh;
+  b->body[0].points_per_cell = 1;
+  b->body[0].has_shape = PETSC_FALSE;
+}
+
 /* Pieces within the ranges or the shape of a selector count, and nothing where it takes no part of the surface. */
-static void test_selected(void **state)
+static void selected(const CellType *own)
 {
   Bench b;
-  (void)state;
   bench_init(&b, "mpm", CELL_HEXAHEDRON, 8);
   bench_box(&b, 0, (PetscReal[]){0.13, 0.2, 0.31}, (PetscReal[]){0.77, 0.92, 0.9});
+  if (own) bring_mesh(&b, *own);
   bench_dynamic(&b, 1, 0.01);
   LoadSpec *load = on_body(&b, LOAD_TRACTION, 0, -1, 0);
   load->on.has[0] = load->on.has[1] = PETSC_TRUE;
@@ -304,6 +318,15 @@ static void test_selected(void **state)
   CALL(ModelDestroy(&m));
   b.load[0].on.min[1] = b.load[0].on.max[1] = 1; /* where the last cells end */
   bench_refused(&b, PETSC_COMM_WORLD, "loads.tractions[0].on", "selects no face of the body's boundary");
+  bench_end(&b);
+}
+
+static void test_selected(void **state)
+{
+  static const CellType own[] = {CELL_HEXAHEDRON, CELL_TETRAHEDRON};
+  (void)state;
+  selected(NULL);
+  EACH_OF (k, own) selected(own + k);
 }
 
 /* A ring that is blown up at once, and turns: the same on all ranks as on one; pieces that turn and stretch on their

@@ -92,6 +92,15 @@ expect "in a ring" 0 "$talus" run disk.yaml --out run --force --set kinematics=a
 near base 3 785.398 0.2 # p pi R^2
 expect "by a place" 0 "$talus" run disk.yaml --out run --force --set 'loads.tractions[0].on={body: d, boundary: left}'
 near base 3 500 1e-3
+for basis in cell gimp; do # the grid's lines, and a fourth of its cells, are elsewhere
+  expect "as far as its range, $basis" 0 "$talus" run disk.yaml --out run --force --set "basis={$basis: {}}" --set 'loads.tractions[0].on={body: d, boundary: left, y: [0.123, 0.4]}'
+  near base 3 277 1e-5
+done
+turn
+expect "a range within a part" 0 on_ranks $ranks "$talus" run disk.yaml --out run --force --set 'loads.tractions[0].on={body: d, boundary: left, y: [0.203, 0.204]}'
+near base 3 1 1e-5
+expect "a ring as far as its range" 0 "$talus" run disk.yaml --out run --force --set kinematics=axisymmetric --set 'loads.tractions[0].on={body: d, boundary: bottom, x: [0.1234, 0.377]}'
+near base 3 398.672632 1e-5 # t pi (b^2 - a^2)
 sed 's/"arc"/"bottom"/' disk.geo >bottom.geo # also a side of the grid, where the body has 0.5 m
 turn
 expect "its own name" 0 on_ranks $ranks "$talus" run disk.yaml --out run --force --set 'bodies[0].mesh=bottom.geo' --set 'loads.tractions[0].on={body: d, boundary: bottom}'

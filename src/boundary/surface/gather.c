@@ -120,6 +120,19 @@ static void make_piece(const Gather *g, PetscReal along[2][3], FacePoint *p)
     for (int d = 0; d < 3; ++d) p->edge[k][d] = along[k][d];
 }
 
+void surface_piece(PetscInt dim, const PieceSum *sum, FacePoint *piece)
+{
+  PetscReal mid[3], C[6], quarter[2][3];
+  spread_of(sum, mid, C);
+  find_edges(C, quarter);
+  *piece = (FacePoint){.area = sum->area};
+  for (int d = 0; d < 3; ++d) {
+    piece->x[d] = sum->origin[d] + mid[d];
+    piece->vector[d] = sum->vector[d];
+    for (PetscInt k = 0; k + 1 < dim; ++k) piece->edge[k][d] = 2 * quarter[k][d];
+  }
+}
+
 /* Is there anything? The end of a surface of the next cell is as wide as round-off or the selector's tolerance, and
  * what lies on the axis of rings has no area. */
 static PetscBool is_something(const Gather *g, PetscReal size, const PieceSum *sum)
@@ -193,7 +206,7 @@ static PetscBool reaches(const Surface *s, PetscInt dim, const CellBox *box)
   return (PetscBool)(PetscAbsReal(surface_distance(s, dim, box->centre, gradient)) <= 1.001 * box->size * s->steepness);
 }
 
-static void set_steps(BodySurface *body, PetscReal size)
+void surface_set_steps(BodySurface *body, PetscReal size)
 {
   PetscReal largest = 0;
   for (PetscInt d = 0; d < body->grid->dim; ++d)
@@ -208,7 +221,7 @@ static PetscErrorCode AddCell(Gather *g, BodySurface *body, PetscInt cell)
 
   PetscFunctionBeginUser;
   look_at(body->grid, cell, &box);
-  set_steps(body, box.size);
+  surface_set_steps(body, box.size);
   for (PetscInt k = 0; k < body->n_surfaces; ++k) {
     const Trim trim = {.body = body, .k = k};
     PieceSum sum = {.origin = {box.centre[0], box.centre[1], body->grid->dim == 3 ? box.centre[2] : 0}};
@@ -231,7 +244,7 @@ static PetscErrorCode AddSide(Gather *g, BodySurface *body, PetscInt cell, Petsc
 
   PetscFunctionBeginUser;
   look_at(body->grid, cell, &box);
-  set_steps(body, box.size);
+  surface_set_steps(body, box.size);
   (void)face_quadrature(&kinematics_3d, body->grid, cell, side, q);
   for (int d = 0; d < 3; ++d) {
     sum.origin[d] = d < dim ? box.centre[d] : 0;

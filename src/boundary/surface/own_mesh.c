@@ -1,5 +1,5 @@
 /* The surface of a body that brings a mesh of its own: sides of that mesh, in parts that are small beside a cell of the
- * grid. */
+ * grid, and what the selector takes of each. */
 #include "base/gather.h"
 #include "boundary/sides/box_side.h"
 #include "boundary/sides/side_keys.h"
@@ -9,6 +9,7 @@
 #define PARTS_A_CELL 4 /* along an edge */
 #define MOST_PARTS 64
 #define INWARDS 1e-6 /* of a cell: a part on a line of the grid belongs to the cell that holds the material */
+#define NOTHING 1e-8 /* of a part: round-off, and the selector's tolerance */
 
 Bearer body_bearer(const BodySpec *body, PetscBool fills)
 {
@@ -84,42 +85,48 @@ static PetscReal longest_edge(PetscInt nodes, const Corners x)
   return PetscSqrtReal(most);
 }
 
-/* Part (i, j) of an edge, or of a quadrilateral, each cut into n along its edges. */
-static void cut_square(PetscInt nodes, const Corners x, PetscInt n, PetscInt i, PetscInt j, FacePoint *part)
+/* A place of an edge, a triangle or a quadrilateral, (0, 0) at its first corner. */
+static void place_at(PetscInt nodes, const Corners x, PetscReal s, PetscReal t, PetscReal *at)
 {
-  const PetscReal s = ((PetscReal)i + 0.5) / (PetscReal)n, t = nodes == 2 ? 0 : ((PetscReal)j + 0.5) / (PetscReal)n;
-  const PetscInt far[2] = {nodes == 2 ? 1 : 2, nodes == 2 ? 0 : 3};
   for (int d = 0; d < 3; ++d) {
-    const PetscReal low = x[1][d] - x[0][d], high = x[far[0]][d] - x[far[1]][d];
-    const PetscReal left = x[far[1]][d] - x[0][d], right = x[far[0]][d] - x[1][d];
-    part->edge[0][d] = 0.5 * (nodes == 2 ? low : (1 - t) * low + t * high) / (PetscReal)n;
-    part->edge[1][d] = nodes == 2 ? 0 : 0.5 * ((1 - s) * left + s * right) / (PetscReal)n;
-    part->x[d] = x[0][d] + s * low + t * ((1 - s) * left + s * right);
+    at[d] = x[0][d] + s * (x[1][d] - x[0][d]);
+    if (nodes > 2) at[d] += t * (x[nodes - 1][d] - x[0][d]);
+    if (nodes == 4) at[d] += s * t * (x[0][d] - x[1][d] + x[2][d] - x[3][d]);
   }
 }
 
-/* Triangle (i, j) of those into which one is cut, or the one that points the other way beside it. The parallelogram
- * that stands for it has its area. */
-static void cut_triangle(const Corners x, PetscInt n, PetscInt i, PetscInt j, PetscBool turned, FacePoint *part)
+/* Part (i, j) of a side whose edges are cut into n; turned: the triangle beside it that points the other way. */
+static void cut_part(PetscInt nodes, const Corners x, PetscInt n, PetscInt i, PetscInt j, PetscBool turned,
+                     Corners part)
 {
-  const PetscReal off = turned ? 2. / 3 : 1. / 3;
-  const PetscReal s = ((PetscReal)i + off) / (PetscReal)n, t = ((PetscReal)j + off) / (PetscReal)n;
+  static const PetscInt square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}},
+                        triangle[2][3][2] = {{{0, 0}, {1, 0}, {0, 1}}, {{1, 1}, {0, 1}, {1, 0}}};
+  const PetscInt(*at)[2] = nodes == 3 ? triangle[turned] : square;
+  for (PetscInt k = 0; k < nodes; ++k)
+    place_at(nodes, x, (PetscReal)(i + at[k][0]) / (PetscReal)n, (PetscReal)(j + at[k][1]) / (PetscReal)n, part[k]);
+}
+
+/* The piece that stands for a part: its middle and half edges, of a triangle those of a parallelogram of its area. */
+static void find_edges(PetscInt nodes, const Corners x, FacePoint *part)
+{
+  const PetscReal half = nodes == 3 ? 0.5 / PETSC_SQRT2 : 0.5;
   for (int d = 0; d < 3; ++d) {
-    const PetscReal u = x[1][d] - x[0][d], v = x[2][d] - x[0][d];
-    part->x[d] = x[0][d] + s * u + t * v;
-    part->edge[0][d] = u / (2 * PETSC_SQRT2 * (PetscReal)n);
-    part->edge[1][d] = v / (2 * PETSC_SQRT2 * (PetscReal)n);
+    const PetscReal low = x[1][d] - x[0][d], left = nodes > 2 ? x[nodes - 1][d] - x[0][d] : 0;
+    const PetscReal twist = nodes == 4 ? 0.5 * (x[0][d] - x[1][d] + x[2][d] - x[3][d]) : 0;
+    part->edge[0][d] = half * (low + twist);
+    part->edge[1][d] = half * (left + twist);
+    part->x[d] = 0;
+    for (PetscInt i = 0; i < nodes; ++i) part->x[d] += x[i][d] / (PetscReal)nodes;
   }
 }
 
-/* What its edges span, outwards, and as wide as the circle is long in a ring. */
-static void weigh(const Kinematics *kinematics, PetscInt dim, FacePoint *part)
+/* What its edges span, outwards. */
+static void find_vector(PetscInt dim, FacePoint *part)
 {
-  const PetscReal weight = kinematics_weight(kinematics, part->x[0]), *u = part->edge[0];
-  const PetscReal thick[3] = {0, 0, 0.5}, *v = dim == 2 ? thick : part->edge[1];
+  const PetscReal thick[3] = {0, 0, 0.5}, *u = part->edge[0], *v = dim == 2 ? thick : part->edge[1];
   part->area = 0;
   for (int d = 0; d < 3; ++d) {
-    part->vector[d] = 4 * weight * (u[(d + 1) % 3] * v[(d + 2) % 3] - u[(d + 2) % 3] * v[(d + 1) % 3]);
+    part->vector[d] = 4 * (u[(d + 1) % 3] * v[(d + 2) % 3] - u[(d + 2) % 3] * v[(d + 1) % 3]);
     part->area += PetscSqr(part->vector[d]);
   }
   part->area = PetscSqrtReal(part->area);
@@ -129,13 +136,67 @@ typedef struct {
   const Kinematics *kinematics;
   const Grid *grid, *own;
   const Selector *on;
+  Selector ranges;     /* the same without its shape */
+  BodySurface surface; /* the sides of the mesh, bounded by no shape */
 } Cutting;
 
-static PetscErrorCode AddPart(const Cutting *c, FacePoint *part, Parts *parts)
+/* Of the corners, from the middle. */
+static PetscReal reach_of(PetscInt nodes, const Corners x, const PetscReal *middle)
 {
+  PetscReal most = 0;
+  for (PetscInt i = 0; i < nodes; ++i) {
+    PetscReal square = 0;
+    for (int d = 0; d < 3; ++d) square += PetscSqr(x[i][d] - middle[d]);
+    most = PetscMax(most, square);
+  }
+  return PetscSqrtReal(most);
+}
+
+/* What a selector takes of a part. */
+static PieceSum sum_taken(const Cutting *c, const Selector *on, PetscInt nodes, const Corners x, const FacePoint *part)
+{
+  const PetscInt dim = c->own->dim;
+  BodySurface surface = c->surface;
+  const Trim trim = {.body = &surface, .k = -1};
+  PieceSum sum = {.origin = {part->x[0], part->x[1], part->x[2]}};
+  surface.on = on;
+  for (PetscInt k = 0; k + dim <= nodes; ++k) {
+    Facet facet = {{0}};
+    for (int d = 0; d < 3; ++d) facet[0][d] = x[0][d], facet[1][d] = x[k + 1][d];
+    for (int d = 0; d < 3 && dim == 3; ++d) facet[2][d] = x[k + 2][d];
+    surface_trim(&trim, facet, part->vector, &sum);
+  }
+  return sum;
+}
+
+/* Where the selector ends within a part, a piece with the area, middle and spread of what it takes is left of that;
+ * where it does not, the part itself or nothing. To look for a shape's end costs a hundred times what ranges do. */
+static void select_part(const Cutting *c, PetscInt nodes, const Corners x, FacePoint *part)
+{
+  const PetscInt dim = c->own->dim;
+  const Shape *shape = c->on->has_shape ? &c->on->shape : NULL;
+  const PetscReal whole = part->area, reach = reach_of(nodes, x, part->x);
+  part->area = 0;
+  if (shape && !shape_contains(shape, dim, part->x, reach)) return;
+  const PetscBool within = (PetscBool)(!shape || shape_contains(shape, dim, part->x, -reach));
+  const PieceSum sum = sum_taken(c, within ? &c->ranges : c->on, nodes, x, part);
+  if (sum.area < NOTHING * whole) return;
+  part->area = whole;
+  if (sum.area < (1 - NOTHING) * whole) surface_piece(dim, &sum, part);
+}
+
+static PetscErrorCode AddPart(const Cutting *c, PetscInt nodes, const Corners x, Parts *parts)
+{
+  FacePoint part = {.area = 0};
+
   PetscFunctionBeginUser;
-  weigh(c->kinematics, c->own->dim, part);
-  if (part->area > 0 && grid_takes(c->own, c->on, part->x)) PetscCall(Add(parts, part));
+  find_edges(nodes, x, &part);
+  find_vector(c->own->dim, &part);
+  select_part(c, nodes, x, &part);
+  const PetscReal weight = kinematics_weight(c->kinematics, part.x[0]);
+  part.area *= weight; /* as wide as the circle is long in a ring */
+  for (int d = 0; d < 3; ++d) part.vector[d] *= weight;
+  if (part.area > 0) PetscCall(Add(parts, &part));
   PetscFunctionReturn(0);
 }
 
@@ -143,8 +204,7 @@ static PetscErrorCode CutSide(const Cutting *c, PetscInt cell, PetscInt side, Pa
 {
   const Cell *type = grid_cell(c->own, cell);
   const PetscInt *node = c->own->cell_node + cell * c->own->nodes_per_cell, nodes = type->face_nodes;
-  FacePoint part = {.area = 0};
-  Corners x = {{0}};
+  Corners x = {{0}}, part = {{0}};
 
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < nodes; ++i)
@@ -153,12 +213,11 @@ static PetscErrorCode CutSide(const Cutting *c, PetscInt cell, PetscInt side, Pa
   const PetscInt n = (PetscInt)PetscMin(MOST_PARTS, wanted), rows = nodes == 2 ? 1 : n;
   for (PetscInt j = 0; j < rows; ++j)
     for (PetscInt i = 0; i < (nodes == 3 ? n - j : n); ++i) {
-      if (nodes == 3) cut_triangle(x, n, i, j, PETSC_FALSE, &part);
-      else cut_square(nodes, x, n, i, j, &part);
-      PetscCall(AddPart(c, &part, parts));
+      cut_part(nodes, x, n, i, j, PETSC_FALSE, part);
+      PetscCall(AddPart(c, nodes, part, parts));
       if (nodes != 3 || i + j > n - 2) continue;
-      cut_triangle(x, n, i, j, PETSC_TRUE, &part);
-      PetscCall(AddPart(c, &part, parts));
+      cut_part(nodes, x, n, i, j, PETSC_TRUE, part);
+      PetscCall(AddPart(c, nodes, part, parts));
     }
   PetscFunctionReturn(0);
 }
@@ -250,6 +309,10 @@ PetscErrorCode BodyMeshPoints(const Grid *grid, const Case *c, PetscInt body, co
   PetscCall(BodyMeshAgain(grid, c, body, &own));
   cut.own = own;
   if (own) PetscCall(ResolveName(grid, own, (PetscBool)(fills && c->bodies[body].has_shape), &at));
+  cut.ranges = at;
+  cut.ranges.has_shape = PETSC_FALSE;
+  cut.surface = (BodySurface){.grid = own, .kinematics = &kinematics_3d};
+  if (own) surface_set_steps(&cut.surface, own->smallest);
   if (own) PetscCall(CollectParts(&cut, c, body, fills, pieces, &parts));
   PetscCall(GridDestroy(&own));
   PetscCall(GatherAll(grid->comm, sizeof(FacePoint), parts.n, parts.point, &all.n, &all.point));

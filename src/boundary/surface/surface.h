@@ -31,13 +31,15 @@ PetscReal surface_distance(const Surface *surface, PetscInt dim, const PetscReal
 typedef struct {
   const Grid *grid;
   const Kinematics *kinematics; /* by which pieces are weighed, where they are summed */
-  const Shape *shape;
+  const Shape *shape;           /* NULL: sides of cells bound it, wherever they are */
   PetscInt n_surfaces;
   Surface *surfaces;
   const Selector *on;
   /* m, in the present cell: so far surfaces are drawn in, and so far to both sides it is asked what they bound */
   PetscReal slack, step;
 } BodySurface;
+/* For a cell of this size, m. */
+void surface_set_steps(BodySurface *body, PetscReal size);
 
 /* Area, normal and moments of pieces about `origin`; weights of rings included. */
 typedef struct {
@@ -47,7 +49,7 @@ typedef struct {
 } PieceSum;
 
 /* Which part of a facet counts: of surface k where that bounds the shape; k < 0: of a side of a cell where the shape
- * goes on beyond it. outward: unit normal of such a side. */
+ * goes on beyond it, or there is none. outward: unit normal of such a side. */
 typedef struct {
   const BodySurface *body;
   PetscInt k;
@@ -60,6 +62,8 @@ typedef PetscReal Facet[3][3];
 void surface_march(const Trim *trim, CellType type, const PetscReal *x, PieceSum *sum);
 /* --- trim.c --- */
 void surface_trim(const Trim *trim, Facet facet, const PetscReal *outward, PieceSum *sum);
+/* --- gather.c: one piece with the area, middle, vector and spread of a sum --- */
+void surface_piece(PetscInt dim, const PieceSum *sum, FacePoint *piece);
 
 /* Collective. Points on the surface of a body that fills its shape, as far as the selector takes them, in the grid as
  * it is at the start; pieces: with edges, over which functions are to be averaged. Arrays for PetscFree. */

@@ -38,11 +38,12 @@ static PetscBool bounds(const Trim *t, const PetscReal *x)
   return PETSC_TRUE;
 }
 
-/* Does the shape go on beyond a side of the last cell? */
+/* Does the shape go on beyond a side of the last cell? Without one the side is the surface. */
 static PetscBool goes_on(const Trim *t, const PetscReal *x)
 {
   const BodySurface *b = t->body;
   PetscReal in[3] = {0, 0, 0}, out[3] = {0, 0, 0};
+  if (!b->shape) return grid_takes(b->grid, b->on, x);
   for (PetscInt d = 0; d < b->grid->dim; ++d) {
     in[d] = x[d] - b->slack * t->outward[d];
     out[d] = x[d] + b->slack * t->outward[d];
