@@ -307,35 +307,53 @@ static void bad_meshes(void **state)
        " 0\n$EndNodes\n"                                                                          \
        "$Elements\n2\n1 3 2 0 1 1 2 3 4\n2 3 2 0 2 5 6 7 8\n$EndElements\n"
 
-/* Cells that touch and share no node are a mesh, of which one is told. */
+/* A mesh is made of the text, of which one is told this, or nothing. */
+static void tell(const char *text, const char *said)
+{
+  char *printed = NULL;
+  size_t size;
+  Diag *diag;
+  Grid *grid;
+  write_file("told.msh", text, strlen(text));
+  const Case c = mesh_case(in_folder("told.msh"), 2);
+  CALL(DiagCreate(&diag));
+  CALL(GridCreate(PETSC_COMM_WORLD, &c, NULL, NULL, diag, &grid));
+  assert_non_null(grid);
+  FILE *out = open_memstream(&printed, &size);
+  CALL(DiagFlush(diag, out));
+  (void)fclose(out);
+  if (!my_rank() && said) assert_non_null(strstr(printed, said));
+  else assert_string_equal(printed, "");
+  free(printed);
+  CALL(DiagDestroy(&diag));
+  CALL(GridDestroy(&grid));
+}
+
+/* Cells that touch and share no node. */
 static void torn(void **state)
 {
-  static const struct {
-    const char *text, *said;
-  } meshes_of[] = {{SIDE_BY_SIDE("1", "1"), "2 pairs of nodes stand at one place, as at (1, 0)"},
-                   {SIDE_BY_SIDE("1.00001", "1"), "2 pairs of nodes"},
-                   {SIDE_BY_SIDE("1", "1.2"), "1 pair of nodes stands at one place, as at (1, 0)"},
-                   {SIDE_BY_SIDE("1.01", "1"), NULL}};
   (void)state;
-  for (int k = 0; k < 4; ++k) {
-    char *printed = NULL;
-    size_t size;
-    Diag *diag;
-    Grid *grid;
-    write_file("torn.msh", meshes_of[k].text, strlen(meshes_of[k].text));
-    const Case c = mesh_case(in_folder("torn.msh"), 2);
-    CALL(DiagCreate(&diag));
-    CALL(GridCreate(PETSC_COMM_WORLD, &c, NULL, NULL, diag, &grid));
-    assert_non_null(grid);
-    FILE *out = open_memstream(&printed, &size);
-    CALL(DiagFlush(diag, out));
-    (void)fclose(out);
-    if (!my_rank() && meshes_of[k].said) assert_non_null(strstr(printed, meshes_of[k].said));
-    else assert_string_equal(printed, "");
-    free(printed);
-    CALL(DiagDestroy(&diag));
-    CALL(GridDestroy(&grid));
-  }
+  tell(SIDE_BY_SIDE("1", "1"), "2 pairs of nodes stand at one place, as at (1, 0)");
+  tell(SIDE_BY_SIDE("1.00001", "1"), "2 pairs of nodes");
+  tell(SIDE_BY_SIDE("1", "1.2"), "1 pair of nodes stands at one place, as at (1, 0)");
+  tell(SIDE_BY_SIDE("1.01", "1"), NULL);
+}
+
+#define LINES(n, lines)                                                                     \
+  HEAD                                                                                      \
+    "$PhysicalNames\n1\n1 7 \"top\"\n$EndPhysicalNames\n"                                   \
+    "$Nodes\n7\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 2 1 0\n5 1 1 0\n6 0 1 0\n7 3 1 0\n$EndNodes\n" \
+    "$Elements\n" n "\n1 3 2 0 1 1 2 5 6\n2 3 2 0 1 2 3 4 5\n" lines "$EndElements\n"
+
+/* Sides of a boundary that no cell has, be it that they span two, or go to a node of none. */
+static void strays(void **state)
+{
+  (void)state;
+  tell(LINES("4", "3 1 2 7 1 5 6\n4 1 2 7 1 4 5\n"), NULL);
+  tell(LINES("4", "3 1 2 7 1 5 6\n4 1 2 7 1 6 4\n"), "no cell has 1 of the 2 sides of 'top', as that around (1, 1)");
+  tell(LINES("5", "3 1 2 7 1 5 6\n4 1 2 7 1 4 7\n5 1 2 7 1 6 4\n"),
+       "2 of the 3 sides of 'top', as that around (2.5, 1)");
+  tell(LINES("3", "3 1 2 7 1 6 4\n"), NULL); /* no boundary */
 }
 
 static void bad_geo(void **state)
@@ -441,6 +459,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(bad_files),
     cmocka_unit_test(bad_meshes),
     cmocka_unit_test(torn),
+    cmocka_unit_test(strays),
     cmocka_unit_test(bad_geo),
     cmocka_unit_test(gmsh_is_missing),
     cmocka_unit_test(truncated_files),

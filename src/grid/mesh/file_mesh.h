@@ -23,6 +23,9 @@ PetscErrorCode FileMeshTellTorn(const FileMesh *mesh, const char *path, Diag *di
  * side. */
 PetscErrorCode FileMeshSets(Grid *grid, const MshFile *msh, const PetscInt *node_of, const PetscInt *cell_of,
                             const TupleTable *faces, const PetscInt *face_at);
+/* A warning for each set of which some sides are those of no cell. */
+PetscErrorCode FileMeshTellStrays(Grid *grid, const MshFile *msh, const PetscInt *node_of, const TupleTable *faces,
+                                  const char *path, Diag *diag);
 /* The rank of each cell; weights as in GridCreate. */
 PetscErrorCode FileMeshPartition(const Grid *grid, PetscMPIInt size, GridWeight weight, void *context,
                                  PetscMPIInt *owner);

@@ -305,6 +305,7 @@ static PetscErrorCode ConnectMesh(const FileMesh *mesh, const MshFile *msh, cons
   PetscCall(FindNeighbours(mesh, faces, face_at, path, diag));
   if (diag_errors(diag) == errors) {
     PetscCall(FileMeshSets(grid, msh, node_of, cell_of, faces, face_at));
+    PetscCall(FileMeshTellStrays(grid, msh, node_of, faces, path, diag));
     PetscCall(FindOuter(grid));
   }
   PetscCall(TupleTableDestroy(&faces));
