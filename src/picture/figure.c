@@ -137,28 +137,33 @@ static void place_of(const Figure *figure, const FigureSeries *s, PetscInt i, co
   at[1] = share(figure->log_y && axis == AXIS_LEFT, min[axis], max[axis], s->y[i]);
 }
 
-/* Samples of curves in the corners. */
-static void count_in_corners(const Figure *figure, const PetscReal *min, const PetscReal *max, const PetscReal size[2],
-                             PetscInt count[2][2])
+/* A curve in the corners: its samples, and places between those that a line joins. */
+static void count_series(const Figure *figure, const FigureSeries *s, const PetscReal *min, const PetscReal *max,
+                         const PetscReal size[2], PetscInt count[2][2])
 {
-  for (PetscInt k = 0; k < figure->n_series; ++k) {
-    const FigureSeries *s = &figure->series[k];
-    for (PetscInt i = 0; i + 1 < s->n; ++i) {
-      PetscReal a[2], b[2];
-      if (!figure_visible(figure, s, i) || !figure_visible(figure, s, i + 1)) continue;
-      place_of(figure, s, i, min, max, a);
-      place_of(figure, s, i + 1, min, max, b);
-      for (int part = 0; part <= 8; ++part) {
-        const PetscReal t = part / 8.0, at[2] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
-        count_in_corner(at, size, count);
-      }
+  enum { PARTS = 24 }; /* of a line from one corner to the other: some lie in a legend that it crosses */
+  const PetscBool joined = s->style != FIGURE_MARKS && s->style != FIGURE_DOTS;
+  PetscReal a[2], b[2];
+  for (PetscInt i = 0; i < s->n; ++i) {
+    if (!figure_visible(figure, s, i)) continue;
+    place_of(figure, s, i, min, max, a);
+    count_in_corner(a, size, count);
+    if (!joined || i + 1 == s->n || !figure_visible(figure, s, i + 1)) continue;
+    place_of(figure, s, i + 1, min, max, b);
+    for (int part = 1; part < PARTS; ++part) {
+      const PetscReal t = (PetscReal)part / PARTS, at[2] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])};
+      count_in_corner(at, size, count);
     }
   }
 }
 
-/* Of the legend, in shares of the picture, and a little air. */
+/* Of the legend with its distance from the frame, in shares of what the frame encloses. In pixels: a sample and the air
+ * about it are as wide as seven letters; a line takes 23, the air above and below the lines 25; axes with their numbers
+ * and labels take 130 from the width, 100 more where there is a right one, and 105 from the height, with the title. */
 static void key_size(const Figure *figure, PetscReal size[2])
 {
+  const int width = figure->width ? figure->width : WIDTH, height = figure->height ? figure->height : HEIGHT;
+  const PetscReal scale = label_scale(width, height);
   PetscInt named = figure->n_bands + (figure->slope != 0);
   size_t longest = 8;
   for (PetscInt k = 0; k < figure->n_series; ++k) {
@@ -167,8 +172,9 @@ static void key_size(const Figure *figure, PetscReal size[2])
     longest = PetscMax(longest, strlen(figure->series[k].name));
   }
   for (PetscInt k = 0; k < figure->n_bands; ++k) longest = PetscMax(longest, strlen(figure->bands[k].name));
-  size[0] = PetscMin(0.1 + 0.0115 * (PetscReal)longest, 0.95);
-  size[1] = PetscMin(0.05 + 0.05 * (PetscReal)named, 0.95);
+  const PetscReal wide = scale * LETTER * (7 + (PetscReal)longest), high = scale * (25 + 23 * (PetscReal)named);
+  size[0] = PetscMin(wide / (width - scale * (figure->right_label ? 230 : 130)), 0.95);
+  size[1] = PetscMin(high / (height - scale * 105), 0.95);
 }
 
 /* The legend goes where no curves are; where several corners are as good, to the top and to the left, and below where
@@ -179,7 +185,7 @@ static void write_key(FILE *out, const Figure *figure, const PetscReal *min, con
   PetscReal size[2];
   int right = figure->slope < 0, top = 1; /* where falling curves leave room */
   key_size(figure, size);
-  count_in_corners(figure, min, max, size, count);
+  for (PetscInt k = 0; k < figure->n_series; ++k) count_series(figure, &figure->series[k], min, max, size, count);
   for (int y = 1; y >= 0; --y)
     for (int x = 0; x < 2; ++x)
       if (count[x][y] < count[right][top]) right = x, top = y;
@@ -187,12 +193,21 @@ static void write_key(FILE *out, const Figure *figure, const PetscReal *min, con
   else fprintf(out, "set key %s %s\n", top ? "top" : "bottom", right ? "right" : "left");
 }
 
-/* Half of a tick's number stands beyond the end of the axis: gnuplot leaves room for three letters. */
-static void write_right_margin(FILE *out, PetscReal max)
+/* Digits in which the numbers of an axis differ, six at least: the ticks of a narrow range are a tenth of it apart. */
+static int tick_digits(PetscReal min, PetscReal max)
 {
+  const PetscReal size = PetscMax(PetscAbsReal(min), PetscAbsReal(max));
+  if (!(max - min > 1e-12 * size)) return 6;
+  return (int)PetscMax(6, PetscCeilReal(PetscLog10Real(size / (max - min))) + 2);
+}
+
+/* Half of a tick's number stands beyond the end of the axis: gnuplot leaves room for three letters. */
+static void write_right_margin(FILE *out, PetscReal min, PetscReal max)
+{
+  const int digits = tick_digits(min, max);
   char number[32];
-  snprintf(number, sizeof number, "%.3g", (double)max);
-  snprintf(number, sizeof number, "%g", strtod(number, NULL));
+  snprintf(number, sizeof number, "%.*g", digits > 6 ? digits : 3, (double)max);
+  snprintf(number, sizeof number, "%.*g", digits, strtod(number, NULL));
   fprintf(out, "set rmargin %g\n", PetscMax(3, 0.5 * (double)strlen(number) + 1));
 }
 
@@ -200,12 +215,12 @@ static void write_right_margin(FILE *out, PetscReal max)
 static void write_right_axis(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
 {
   if (!figure->right_label) {
-    write_right_margin(out, max[AXIS_X]);
+    write_right_margin(out, min[AXIS_X], max[AXIS_X]);
     return;
   }
   write_label(out, "y2label", figure->right_label, letters(figure, PETSC_TRUE));
   write_range(out, "y2", PETSC_FALSE, min[AXIS_RIGHT], max[AXIS_RIGHT], 0.06);
-  fputs("set y2tics\n", out);
+  fprintf(out, "set y2tics\nset format y2 '%%.%dg'\n", tick_digits(min[AXIS_RIGHT], max[AXIS_RIGHT]));
 }
 
 static void write_axes(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
@@ -213,7 +228,9 @@ static void write_axes(FILE *out, const Figure *figure, const PetscReal *min, co
   write_title(out, figure);
   write_label(out, "xlabel", figure->x_label, letters(figure, PETSC_FALSE));
   write_label(out, "ylabel", figure->y_label, letters(figure, PETSC_TRUE));
-  fputs("set format '%g'\n", out); /* gnuplot's own has five decimals, in which small numbers are the same */
+  /* gnuplot's own has five decimals, in which small numbers are the same */
+  fprintf(out, "set format '%%g'\nset format x '%%.%dg'\nset format y '%%.%dg'\n", tick_digits(min[0], max[0]),
+          tick_digits(min[1], max[1]));
   if (figure->log_x) fputs("set logscale x\nset format x '%g'\n", out);
   if (figure->log_y) fputs("set logscale y\nset format y '%.0e'\n", out);
   if (figure->log_y && max[1] / min[1] < 1e3) fputs("set format y '%g'\n", out);

@@ -303,6 +303,53 @@ static void test_legend(void **state)
   TestRemove(folder);
 }
 
+/* A peak below the end of a legend's longer name, beside a right axis, which leaves less room: y / time of a hopper. The
+ * legend goes below the axis; with a peak farther on it stands in its corner. */
+static void test_legend_right(void **state)
+{
+  const PetscReal x[4] = {0, 0.33, 0.35, 1}, far[4] = {0, 0.6, 0.7, 1}, up[4] = {0, 0, 0, 1}, peak[4] = {0, 1, 0, 0};
+  char folder[64], path[128];
+  (void)state;
+  TestFolder(folder);
+  for (int k = 0; k < 2; ++k) {
+    const PetscReal *at = k ? far : x;
+    const FigureSeries series[2] = {{.name = "low", .n = 4, .x = at, .y = up},
+                                    {.name = "fz (right axis)", .n = 4, .x = at, .y = peak, .right = PETSC_TRUE}};
+    const Figure figure = {.x_label = "along", .right_label = "fz", .n_series = 2, .series = series};
+    PetscBool done;
+    Diag *diag;
+    assert_int_equal(DiagCreate(&diag), 0);
+    snprintf(path, sizeof path, "%s/legend.svg", folder);
+    assert_int_equal(FigureWrite(&figure, path, diag, &done), 0);
+    char *svg = TestRead(folder, "legend.svg");
+    assert_int_equal(Place(svg, ">low<", 1) > Place(svg, ">along<", 1), k == 0);
+    free(svg);
+    assert_int_equal(DiagDestroy(&diag), 0);
+  }
+  TestRemove(folder);
+}
+
+/* A range that is narrow beside its numbers has ticks that differ. */
+static void test_narrow_ticks(void **state)
+{
+  const PetscReal x[2] = {1000.12, 1000.13}, y[2] = {0, 1};
+  const FigureSeries curve = {.n = 2, .x = x, .y = y};
+  const Figure figure = {.n_series = 1, .series = &curve};
+  char folder[64], path[128];
+  PetscBool done;
+  Diag *diag;
+  (void)state;
+  TestFolder(folder);
+  snprintf(path, sizeof path, "%s/a.svg", folder);
+  assert_int_equal(DiagCreate(&diag), 0);
+  assert_int_equal(FigureWrite(&figure, path, diag, &done), 0);
+  assert_int_equal(DiagDestroy(&diag), 0);
+  char *svg = TestRead(folder, "a.svg");
+  assert_true(Place(svg, ">1000.122<", 0) < Place(svg, ">1000.124<", 0));
+  free(svg);
+  TestRemove(folder);
+}
+
 static void Refused(const PlotXYOptions *options, const char *word)
 {
   char *text = Draw(options);
@@ -474,6 +521,8 @@ static int Tests(void)
                                      cmocka_unit_test(test_formats),
                                      cmocka_unit_test(test_last_number),
                                      cmocka_unit_test(test_legend),
+                                     cmocka_unit_test(test_legend_right),
+                                     cmocka_unit_test(test_narrow_ticks),
                                      cmocka_unit_test(test_mistakes),
                                      cmocka_unit_test(test_compare),
                                      cmocka_unit_test(test_compare_energies),
