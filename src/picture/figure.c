@@ -201,6 +201,15 @@ static int tick_digits(PetscReal min, PetscReal max)
   return (int)PetscMax(6, PetscCeilReal(PetscLog10Real(size / (max - min))) + 2);
 }
 
+/* Long numbers have room for four steps of 1, 2 or 5 along a figure. */
+static void write_long_ticks(FILE *out, PetscReal min, PetscReal max)
+{
+  if (tick_digits(min, max) <= 6) return;
+  const PetscReal quarter = (max - min) / 4, decade = PetscPowReal(10, PetscFloorReal(PetscLog10Real(quarter)));
+  const PetscReal share = quarter / decade;
+  fprintf(out, "set xtics %.15g\n", (double)(decade * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10)));
+}
+
 /* Half of a tick's number stands beyond the end of the axis: gnuplot leaves room for three letters. */
 static void write_right_margin(FILE *out, PetscReal min, PetscReal max)
 {
@@ -231,6 +240,7 @@ static void write_axes(FILE *out, const Figure *figure, const PetscReal *min, co
   /* gnuplot's own has five decimals, in which small numbers are the same */
   fprintf(out, "set format '%%g'\nset format x '%%.%dg'\nset format y '%%.%dg'\n", tick_digits(min[0], max[0]),
           tick_digits(min[1], max[1]));
+  if (!figure->log_x) write_long_ticks(out, min[AXIS_X], max[AXIS_X]);
   if (figure->log_x) fputs("set logscale x\nset format x '%g'\n", out);
   if (figure->log_y) fputs("set logscale y\nset format y '%.0e'\n", out);
   if (figure->log_y && max[1] / min[1] < 1e3) fputs("set format y '%g'\n", out);
