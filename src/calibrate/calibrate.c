@@ -79,7 +79,7 @@ static PetscErrorCode RunAndFit(CalibrateRun *r)
   PetscCall(CalibrateFit(r));
   if (!diag_errors(r->diag))
     fprintf(r->told, "region: %.3g %% of what is looked at, own error at most %.2g of the uncertainties\n",
-            (double)(100 * region_volume(&r->region)), (double)region_doubt(&r->region));
+            (double)(100 * r->region.volume), (double)region_doubt(&r->region));
   PetscFunctionReturn(0);
 }
 

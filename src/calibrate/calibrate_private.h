@@ -23,9 +23,7 @@ typedef struct {
   PetscInt confirmed; /* the point that was run at the best of the region; -1: none */
 } CalibrateRun;
 
-/* calibrate_runs.c: the value of a parameter at x in [0, 1], rounded to a thousandth of its range;
- * x follows. Returns text. */
-const char *calibrate_value(const Parameter *p, PetscReal *x, char text[32]);
+/* calibrate_runs.c */
 /* Plan runs of all instruments at x, unless they are there. *point: their number. Mistakes go to
  * diag. */
 PetscErrorCode CalibrateAdd(CalibrateRun *r, const PetscReal *x, PetscInt *point);

@@ -3,12 +3,11 @@
 #include <string.h>
 #include "base/text.h"
 #include "calibrate/calibrate_private.h"
+#include "calibrate/parameter.h"
 #include "output/directory/run_dir_files.h"
 #include "picture/figure.h"
 
 const char *calibrate_label(const Parameter *p) { return p->label ? p->label : p->name; }
-
-static PetscReal value_at(const Parameter *p, PetscReal x) { return p->low + x * (p->high - p->low); }
 
 static const Member *member_of(const CalibrateRun *r, PetscInt point, PetscInt k)
 {
@@ -39,28 +38,57 @@ static void tell_targets(FILE *out, const CalibrateRun *r)
   fputs("\n| measure | target | left out, a run is predicted within (root mean square) |\n|---|---|---|\n", out);
   for (PetscInt k = 0; k < r->n_targets; ++k) {
     const PetscReal error = surrogate_left_out(r->surrogate[k]);
-    fprintf(out, "| %s | %g +- %g %s | %.3g %s |\n", target_name(r, k, name), (double)r->target[k]->value,
+    fprintf(out, "| %s | %.15g +- %.15g %s | %.3g %s |\n", target_name(r, k, name), (double)r->target[k]->value,
             (double)r->target[k]->uncertainty, unit_of(r, k), (double)error, unit_of(r, k));
   }
 }
 
-/* A parameter whose whole range is possible is not determined. */
+/* What the region says of a parameter: one whose whole range is possible is not determined. */
+static const char *verdict_of(PetscReal low, PetscReal high)
+{
+  if (high - low > 0.95) return "not determined";
+  if (low < 0.01) return "not bounded from below by what was looked at";
+  return high > 0.99 ? "not bounded from above by what was looked at" : "";
+}
+
+/* How far apart values of a parameter lie in the region; in all of its range if there is no region of two points. */
+static PetscReal spread(const CalibrateRun *r, PetscInt p)
+{
+  const Parameter *parameter = &r->c->parameters[p];
+  PetscReal low, high;
+  region_range(&r->region, p, &low, &high);
+  if (high > low) return parameter_at(parameter, high) - parameter_at(parameter, low);
+  return parameter->high - parameter->low;
+}
+
 static void tell_ranges(FILE *out, const CalibrateRun *r)
 {
+  char text[4][32];
   PetscReal low, high;
   fputs("\n| parameter | in the region | looked at | |\n|---|---|---|---|\n", out);
   for (PetscInt p = 0; p < r->c->n_parameters; ++p) {
     const Parameter *parameter = &r->c->parameters[p];
-    const char *unit = parameter->unit ? parameter->unit : "";
+    const PetscReal all = parameter->high - parameter->low;
     region_range(&r->region, p, &low, &high);
-    const char *verdict = high - low > 0.95                 ? "not determined"
-                          : low < 0.01 && high - low < 0.95 ? "not bounded from below by what was looked at"
-                          : high > 0.99                     ? "not bounded from above by what was looked at"
-                                                            : "";
-    fprintf(out, "| %s | %.4g to %.4g %s | %g to %g | %s |\n", calibrate_label(parameter),
-            (double)value_at(parameter, low), (double)value_at(parameter, high), unit, (double)parameter->low,
-            (double)parameter->high, verdict);
+    fprintf(out, "| %s | %s to %s %s | %s to %s%s | %s |\n", calibrate_label(parameter),
+            number_text(parameter_at(parameter, low), spread(r, p), 4, text[0]),
+            number_text(parameter_at(parameter, high), spread(r, p), 4, text[1]),
+            parameter->unit ? parameter->unit : "", number_text(parameter->low, all, 6, text[2]),
+            number_text(parameter->high, all, 6, text[3]),
+            parameter_is_logarithmic(parameter) ? ", by the logarithm" : "", verdict_of(low, high));
   }
+}
+
+/* A handful of points is no range. */
+static void tell_count(FILE *out, const CalibrateRun *r)
+{
+  enum { FEW = 100 };
+  fprintf(out,
+          "\nThe region in which all predictions lie within uncertainty and their own error is %.2g %% of what "
+          "was looked at; %" PetscInt_FMT " of the points tried lie in it.\n",
+          (double)(100 * r->region.volume), r->region.inside);
+  if (r->region.inside < FEW)
+    fputs("So few tell its ranges roughly: narrower ranges of the parameters about them show more of it.\n", out);
 }
 
 static void tell_couples(FILE *out, const CalibrateRun *r)
@@ -75,31 +103,43 @@ static void tell_couples(FILE *out, const CalibrateRun *r)
     }
 }
 
+/* A region without a run that meets all targets is a guess. */
+static void tell_verdict(FILE *out, const CalibrateRun *r)
+{
+  if (calibrate_is_confirmed(r)) fputs("\nThe run at the best point meets all targets.\n", out);
+  else fputs("\nNo run at this point meets all targets.\n", out);
+  if (r->region.inside && !calibrate_is_confirmed(r))
+    fputs(
+      "What the predictions allow is not confirmed, the region may lie elsewhere: more `rounds` or `points` tell "
+      "(runs that are there are used again).\n",
+      out);
+}
+
 static void tell_best(FILE *out, const CalibrateRun *r)
 {
   const Region *region = &r->region;
   const PetscReal *best =
     r->confirmed >= 0 ? r->x + r->confirmed * region->dim : region->x + region->best * region->dim;
-  char name[256];
+  char name[256], text[32];
   fprintf(out, "\n%s:", region->inside ? "Best point" : "Nearest point");
   for (PetscInt p = 0; p < r->c->n_parameters; ++p) {
     const Parameter *parameter = &r->c->parameters[p];
-    char text[32];
     PetscReal x = best[p];
-    fprintf(out, "%s %s = %s %s", p ? "," : "", calibrate_label(parameter), calibrate_value(parameter, &x, text),
+    fprintf(out, "%s %s = %s %s", p ? "," : "", calibrate_label(parameter), parameter_text(parameter, &x, text),
             parameter->unit ? parameter->unit : "");
   }
   fputs("\n\n| measure | target | predicted | its run |\n|---|---|---|---|\n", out);
   for (PetscInt k = 0; k < r->n_targets; ++k) {
-    PetscReal value, deviation;
-    surrogate_at(region->surrogate[k], best, &value, &deviation);
-    fprintf(out, "| %s | %g +- %g | %.4g +- %.2g |", target_name(r, k, name), (double)r->target[k]->value,
-            (double)r->target[k]->uncertainty, (double)value, (double)deviation);
-    if (r->confirmed >= 0) fprintf(out, " %.4g %s |\n", (double)calibrate_found(r, r->confirmed, k), unit_of(r, k));
-    else fputs(" - |\n", out);
+    const PetscReal uncertainty = r->target[k]->uncertainty;
+    PetscReal value, error;
+    surrogate_at(region->surrogate[k], best, &value, &error);
+    fprintf(out, "| %s | %.15g +- %.15g | %s +- %.2g |", target_name(r, k, name), (double)r->target[k]->value,
+            (double)uncertainty, number_text(value, uncertainty, 4, text), (double)error);
+    if (r->confirmed < 0) fputs(" - |\n", out);
+    else
+      fprintf(out, " %s %s |\n", number_text(calibrate_found(r, r->confirmed, k), uncertainty, 4, text), unit_of(r, k));
   }
-  if (calibrate_is_confirmed(r)) fputs("\nThe run at the best point meets all targets.\n", out);
-  else fputs("\nNo run at this point meets all targets.\n", out);
+  tell_verdict(out, r);
 }
 
 static void tell(FILE *out, const CalibrateRun *r)
@@ -111,17 +151,14 @@ static void tell(FILE *out, const CalibrateRun *r)
           r->c->title, r->n, members_count(&r->members, MEMBER_DONE), r->members.n);
   tell_targets(out, r);
   if (r->region.inside) {
-    fprintf(out,
-            "\nThe region in which all predictions lie within uncertainty and their own error is %.2g %% of what "
-            "was looked at.\n",
-            (double)(100 * region_volume(&r->region)));
+    tell_count(out, r);
     tell_ranges(out, r);
     fputc('\n', out);
     tell_couples(out, r);
   } else
     fputs("\nThere is no region: no parameters within the ranges meet all targets, as far as the runs tell.\n", out);
   fprintf(out, "The predictions' own error is at most %.2g of the uncertainties there%s.\n", (double)doubt,
-          doubt > r->c->resolve ? ": more rounds would make the region smaller" : "");
+          doubt > r->c->resolve ? ": more rounds would make the region clearer" : "");
   tell_best(out, r);
 }
 
@@ -140,13 +177,20 @@ static void write_header(FILE *out, const CalibrateRun *r, PetscBool predicted)
 static void write_region(FILE *out, const CalibrateRun *r)
 {
   const Region *region = &r->region;
+  PetscReal apart[SURROGATE_MOST];
+  char text[32];
   write_header(out, r, PETSC_TRUE);
+  for (PetscInt p = 0; p < region->dim; ++p) apart[p] = spread(r, p) / 1000; /* as many points may lie in it */
   for (PetscInt i = 0; i < region->n; ++i) {
     if (region->miss[i] > 1) continue;
     for (PetscInt p = 0; p < region->dim; ++p)
-      fprintf(out, "%s%.6g", p ? "," : "", (double)value_at(&r->c->parameters[p], region->x[i * region->dim + p]));
-    for (PetscInt k = i * r->n_targets; k < (i + 1) * r->n_targets; ++k)
-      fprintf(out, ",%.6g,%.3g", (double)region->value[k], (double)region->deviation[k]);
+      fprintf(out, "%s%s", p ? "," : "",
+              number_text(parameter_at(&r->c->parameters[p], region->x[i * region->dim + p]), apart[p], 6, text));
+    for (PetscInt k = 0; k < r->n_targets; ++k) {
+      const PetscInt at = i * r->n_targets + k;
+      fprintf(out, ",%s,%.3g", number_text(region->value[at], r->target[k]->uncertainty, 6, text),
+              (double)region->error[at]);
+    }
     fputc('\n', out);
   }
 }
@@ -167,12 +211,11 @@ static void write_runs(FILE *out, const CalibrateRun *r)
   write_header(out, r, PETSC_FALSE);
   for (PetscInt i = 0; i < r->n; ++i) {
     for (PetscInt p = 0; p < r->c->n_parameters; ++p)
-      fprintf(out, "%s%s", p ? "," : "",
-              calibrate_value(&r->c->parameters[p], &r->x[i * r->c->n_parameters + p], text));
+      fprintf(out, "%s%s", p ? "," : "", parameter_text(&r->c->parameters[p], &r->x[i * r->c->n_parameters + p], text));
     for (PetscInt k = 0; k < r->n_targets; ++k) {
       const PetscReal value = calibrate_found(r, i, k);
       if (PetscIsNanReal(value)) fputc(',', out);
-      else fprintf(out, ",%.10g", (double)value);
+      else fprintf(out, ",%s", number_text(value, r->target[k]->uncertainty, 10, text));
     }
     fprintf(out, ",%s\n", how_ended(r, i));
   }
@@ -193,9 +236,9 @@ static PetscErrorCode Draw(CalibrateRun *r, PetscInt a, PetscInt b)
   PetscCall(PetscMalloc2(region->n + r->n, &x, region->n + r->n, &y));
   for (PetscInt i = 0; i < region->n; ++i)
     if (region->miss[i] <= 1)
-      x[n] = value_at(pa, region->x[i * dim + a]), y[n++] = value_at(pb, region->x[i * dim + b]);
+      x[n] = parameter_at(pa, region->x[i * dim + a]), y[n++] = parameter_at(pb, region->x[i * dim + b]);
   for (PetscInt i = 0; i < r->n; ++i)
-    x[n + i] = value_at(pa, r->x[i * dim + a]), y[n + i] = value_at(pb, r->x[i * dim + b]);
+    x[n + i] = parameter_at(pa, r->x[i * dim + a]), y[n + i] = parameter_at(pb, r->x[i * dim + b]);
   const FigureSeries series[] = {
     {.name = "the region", .style = FIGURE_DOTS, .n = n, .x = x, .y = y},
     {.name = "runs", .style = FIGURE_MARKS, .n = r->n, .x = x + n, .y = y + n},
@@ -203,6 +246,8 @@ static PetscErrorCode Draw(CalibrateRun *r, PetscInt a, PetscInt b)
   const Figure figure = {.title = r->c->title,
                          .x_label = text_with_unit(calibrate_label(pa), pa->unit, x_label),
                          .y_label = text_with_unit(calibrate_label(pb), pb->unit, y_label),
+                         .log_x = parameter_is_logarithmic(pa),
+                         .log_y = parameter_is_logarithmic(pb),
                          .n_series = 3,
                          .series = series};
   PetscCall(PetscSNPrintf(png, sizeof png, "%s/%s-%s.png", r->out, pa->name, pb->name));

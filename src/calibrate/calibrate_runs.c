@@ -1,18 +1,9 @@
 /* Points and their runs, and what follows from them. */
 #include <ctype.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include "calibrate/calibrate_private.h"
-
-const char *calibrate_value(const Parameter *p, PetscReal *x, char text[32])
-{
-  const PetscReal range = p->high - p->low, step = PetscPowReal(10, floor(log10(range / 1000)));
-  const PetscReal value = PetscMin(PetscMax(round((p->low + *x * range) / step) * step, p->low), p->high);
-  snprintf(text, 32, "%.10g", (double)value);
-  *x = (PetscReal)(strtod(text, NULL) - p->low) / range;
-  return text;
-}
+#include "calibrate/parameter.h"
 
 /* With the values of all parameters for their names. */
 static PetscErrorCode Settings(const CalibrateRun *r, const Instrument *instrument, const PetscReal *x,
@@ -29,7 +20,7 @@ static PetscErrorCode Settings(const CalibrateRun *r, const Instrument *instrume
     SettingList replaced = {0};
     PetscReal at = x[p];
     PetscCall(
-      SettingListAppend(&replaced, set, r->c->parameters[p].name, calibrate_value(&r->c->parameters[p], &at, text)));
+      SettingListAppend(&replaced, set, r->c->parameters[p].name, parameter_text(&r->c->parameters[p], &at, text)));
     PetscCall(SettingListClear(set));
     *set = replaced;
   }
@@ -43,7 +34,7 @@ static void name_point(const CalibrateRun *r, PetscReal *x, char name[200])
   size_t used = 0;
   for (PetscInt p = 0; p < r->c->n_parameters && used < 200; ++p)
     used += (size_t)snprintf(name + used, 200 - used, "%s%.40s=%s", p ? "," : "", r->c->parameters[p].name,
-                             calibrate_value(&r->c->parameters[p], &x[p], text));
+                             parameter_text(&r->c->parameters[p], &x[p], text));
   for (char *c = name; *c; ++c)
     if (!isalnum((unsigned char)*c) && !strchr("._-+=,", *c)) *c = '_';
 }

@@ -1,7 +1,6 @@
 #include "calibrate/region.h"
 #include <math.h>
-
-enum { CLOUD = 12000, ENOUGH = 600, CLOSER = 5, BOXED = 120 };
+#include "calibrate/region_private.h"
 
 void region_halton(PetscInt dim, PetscInt i, PetscReal *x)
 {
@@ -17,71 +16,69 @@ void region_halton(PetscInt dim, PetscInt i, PetscReal *x)
   }
 }
 
-static void evaluate(Region *r, PetscInt i)
+void region_evaluate(Region *r, PetscInt i)
 {
   r->miss[i] = r->doubt[i] = r->far[i] = 0;
   for (PetscInt k = 0; k < r->n_targets; ++k) {
     const PetscReal u = r->target[k]->uncertainty;
-    PetscReal *v = &r->value[i * r->n_targets + k], *s = &r->deviation[i * r->n_targets + k];
-    surrogate_at(r->surrogate[k], r->x + i * r->dim, v, s);
+    PetscReal *v = &r->value[i * r->n_targets + k], *e = &r->error[i * r->n_targets + k];
+    surrogate_at(r->surrogate[k], r->x + i * r->dim, v, e);
     const PetscReal off = PetscAbsReal(*v - r->target[k]->value);
-    r->miss[i] = PetscMax(r->miss[i], off / (u + *s));
+    r->miss[i] = PetscMax(r->miss[i], off / (u + *e));
     r->far[i] = PetscMax(r->far[i], off / u);
-    r->doubt[i] = PetscMax(r->doubt[i], *s / u);
+    r->doubt[i] = PetscMax(r->doubt[i], *e / u);
   }
 }
 
-static void fill(Region *r)
+void region_judge(Region *r)
 {
   r->inside = r->best = 0;
   for (PetscInt i = 0; i < r->n; ++i) {
-    PetscReal *x = r->x + i * r->dim;
-    region_halton(r->dim, i, x);
-    for (PetscInt d = 0; d < r->dim; ++d) x[d] = r->low[d] + x[d] * (r->high[d] - r->low[d]);
-    evaluate(r, i);
     const PetscBool in = r->miss[i] <= 1, best_in = r->miss[r->best] <= 1;
     r->inside += in;
     if (in == best_in ? r->far[i] < r->far[r->best] : in) r->best = i;
   }
 }
 
-/* By what points are judged: where nothing is inside, the least miss is that of the largest doubt. */
-static const PetscReal *distances(const Region *r) { return r->inside ? r->miss : r->far; }
-
-/* The distance that so many points do not exceed, by halving. */
-static PetscReal distance_of_best(const Region *r, PetscInt wanted)
+/* The box evenly. */
+static void fill(Region *r)
 {
-  const PetscReal *off = distances(r);
-  PetscReal low = 0, high = 0;
-  for (PetscInt i = 0; i < r->n; ++i) high = PetscMax(high, off[i]);
-  for (int step = 0; step < 60; ++step) {
-    const PetscReal middle = (low + high) / 2;
-    PetscInt n = 0;
-    for (PetscInt i = 0; i < r->n; ++i) n += off[i] <= middle;
-    if (n < wanted) low = middle;
-    else high = middle;
+  r->n = REGION_CLOUD;
+  r->volume = 1;
+  for (PetscInt i = 0; i < r->n; ++i) {
+    PetscReal *x = r->x + i * r->dim;
+    region_halton(r->dim, i, x);
+    for (PetscInt d = 0; d < r->dim; ++d) x[d] = r->low[d] + x[d] * (r->high[d] - r->low[d]);
+    region_evaluate(r, i);
   }
-  return high;
+  region_judge(r);
+  for (PetscInt d = 0; d < r->dim; ++d) r->volume *= r->high[d] - r->low[d];
+  r->volume *= (PetscReal)r->inside / (PetscReal)r->n;
 }
 
-/* About what may be the region, with a fifth of air; PETSC_FALSE if that is no smaller. */
-static PetscBool shrink(Region *r)
+static void fill_all(Region *r)
 {
-  const PetscReal limit = PetscMax(1, distance_of_best(r, BOXED)), *off = distances(r);
-  PetscReal share = 1;
+  for (PetscInt d = 0; d < r->dim; ++d) r->low[d] = 0, r->high[d] = 1;
+  fill(r);
+}
+
+/* The box about all points with miss <= limit, with so much air of its width. Returns its volume. */
+static PetscReal box_about(Region *r, PetscReal limit, PetscReal share)
+{
+  PetscReal volume = 1;
   for (PetscInt d = 0; d < r->dim; ++d) {
     PetscReal low = 1, high = 0;
     for (PetscInt i = 0; i < r->n; ++i) {
-      if (off[i] > limit) continue;
+      if (r->miss[i] > limit) continue;
       low = PetscMin(low, r->x[i * r->dim + d]);
       high = PetscMax(high, r->x[i * r->dim + d]);
     }
-    const PetscReal air = 0.2 * (high - low) + 1e-6, width = r->high[d] - r->low[d];
-    r->low[d] = PetscMax(r->low[d], low - air);
-    r->high[d] = PetscMin(r->high[d], high + air);
-    share *= (r->high[d] - r->low[d]) / width;
+    const PetscReal air = share * (high - low) + 1e-9;
+    r->low[d] = PetscMax(low - air, 0);
+    r->high[d] = PetscMin(high + air, 1);
+    volume *= r->high[d] - r->low[d];
   }
-  return share < 0.8;
+  return volume;
 }
 
 /* Where nothing is inside, runs about the nearest point tell most: not all on top of it. */
@@ -94,36 +91,41 @@ static void widen(Region *r)
   }
 }
 
+/* The region is smaller than the points that fill the ranges see. */
+static PetscErrorCode Approach(Region *r)
+{
+  PetscFunctionBeginUser;
+  PetscCall(RegionWalk(r, r->miss));
+  if (!r->inside) {
+    fill_all(r);
+    PetscCall(RegionWalk(r, r->far)); /* the least miss is that of the largest doubt */
+    widen(r);
+    fill(r);
+  } else if (r->volume * REGION_CLOUD > REGION_ENOUGH * box_about(r, 1, 0.2)) fill(r);
+  else (void)box_about(r, PETSC_MAX_REAL, 0);
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode RegionCreate(PetscInt dim, PetscInt n_targets, const Target *const *target, Surrogate *const *surrogate,
                             Region *r)
 {
+  const PetscInt n = REGION_CLOUD;
+
   PetscFunctionBeginUser;
-  *r = (Region){.dim = dim, .n_targets = n_targets, .target = target, .surrogate = surrogate, .n = CLOUD};
-  PetscCall(PetscMalloc6(r->n * dim, &r->x, r->n * n_targets, &r->value, r->n * n_targets, &r->deviation, r->n,
-                         &r->miss, r->n, &r->doubt, r->n, &r->far));
-  for (PetscInt d = 0; d < dim; ++d) r->high[d] = 1;
-  fill(r);
-  for (int k = 0; k < CLOSER && r->inside < ENOUGH && shrink(r); ++k) fill(r);
-  if (!r->inside) {
-    widen(r);
-    fill(r);
-  }
+  *r = (Region){.dim = dim, .n_targets = n_targets, .target = target, .surrogate = surrogate};
+  PetscCall(PetscMalloc6(n * dim, &r->x, n * n_targets, &r->value, n * n_targets, &r->error, n, &r->miss, n, &r->doubt,
+                         n, &r->far));
+  fill_all(r);
+  if (r->inside < REGION_ENOUGH) PetscCall(Approach(r));
   PetscFunctionReturn(0);
 }
 
 PetscErrorCode RegionDestroy(Region *r)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree6(r->x, r->value, r->deviation, r->miss, r->doubt, r->far));
+  PetscCall(PetscFree6(r->x, r->value, r->error, r->miss, r->doubt, r->far));
   r->n = 0;
   PetscFunctionReturn(0);
-}
-
-PetscReal region_volume(const Region *r)
-{
-  PetscReal box = 1;
-  for (PetscInt d = 0; d < r->dim; ++d) box *= r->high[d] - r->low[d];
-  return box * (PetscReal)r->inside / (PetscReal)r->n;
 }
 
 void region_range(const Region *r, PetscInt parameter, PetscReal *low, PetscReal *high)
@@ -168,11 +170,11 @@ static PetscReal distance(const Region *r, const PetscReal *a, const PetscReal *
   return PetscSqrtReal(d2);
 }
 
-/* What a run at point i would tell: the doubt, where the region may be with twice the deviation; a
- * point that is farther off counts the less the more it is. Less again near other runs. */
+/* What a run at point i would tell: the doubt, where the region may be; a point that is farther off
+ * counts the less the more it is. Less again near other runs. */
 static PetscReal worth(const Region *r, PetscInt i, PetscReal nearest)
 {
-  const PetscReal apart = PetscMin(1, nearest / 0.3), off = PetscMax(r->miss[i] - 1.5, 0);
+  const PetscReal apart = PetscMin(1, nearest / 0.3), off = PetscMax(r->miss[i] - 1, 0);
   return apart * (r->doubt[i] + 1e-3) / (1 + 100 * off * off);
 }
 

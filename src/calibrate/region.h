@@ -1,7 +1,7 @@
 /* The region of parameters in which all surrogates meet their targets, as a cloud of points.
  *
  * A set of parameters belongs to it if for every target |value - target| <= uncertainty +
- * deviation: what the surrogate does not know does not exclude anything. */
+ * error, the surrogate's own: what the surrogate does not know does not exclude anything. */
 #pragma once
 #include "calibrate/calibrate_spec.h"
 
@@ -12,23 +12,22 @@ typedef struct {
   PetscInt n;                                          /* points of the cloud */
   PetscReal low[SURROGATE_MOST], high[SURROGATE_MOST]; /* the box that it fills, in [0, 1] */
   PetscReal *x;                                        /* n x dim */
-  PetscReal *value, *deviation;                        /* n x n_targets */
-  PetscReal *miss;                                     /* the largest |value - target| over (uncertainty + deviation) */
-  PetscReal *doubt;                                    /* the largest deviation over uncertainty */
+  PetscReal *value, *error;                            /* n x n_targets */
+  PetscReal *miss;                                     /* the largest |value - target| over (uncertainty + error) */
+  PetscReal *doubt;                                    /* the largest error over uncertainty */
   PetscReal *far;                                      /* the largest |value - target| over uncertainty */
   PetscInt inside;                                     /* how many have miss <= 1 */
+  PetscReal volume;                                    /* of the region, as a share of that of the ranges */
   PetscInt best; /* the one with the least `far` of those inside, or the one with the least `miss` */
 } Region;
 
-/* Fill the cloud: all of the ranges first, then closer and closer about what may be the region until
- * enough points are inside. */
+/* Fill the cloud: all of the ranges first. Where not enough points are inside it walks closer and closer to the region
+ * until they are, and fills the box about them evenly, if enough of that is inside; else those of the walk stay. */
 PetscErrorCode RegionCreate(PetscInt dim, PetscInt n_targets, const Target *const *target, Surrogate *const *surrogate,
                             Region *region);
 PetscErrorCode RegionDestroy(Region *region);
 /* Point i of a sequence that fills [0, 1]^dim evenly (Halton's). */
 void region_halton(PetscInt dim, PetscInt i, PetscReal *x);
-/* Share of the ranges' volume. */
-PetscReal region_volume(const Region *r);
 /* Range of a parameter in the region, in [0, 1]. */
 void region_range(const Region *r, PetscInt parameter, PetscReal *low, PetscReal *high);
 /* How parameters a and b go together in it: their correlation. */

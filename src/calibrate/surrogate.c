@@ -2,11 +2,15 @@
 #include <math.h>
 #include "calibrate/dense.h"
 
-enum { TREND = SURROGATE_MOST + 1, HYPER = SURROGATE_MOST + 1 };
+/* DEVIATIONS: within so many a run lies, as far as the others tell. */
+enum { TREND = SURROGATE_MOST + 1, HYPER = SURROGATE_MOST + 1, DEVIATIONS = 2 };
+
+#define HUGE_ERROR 100. /* of a logarithm: whatever is measured lies within */
 
 struct Surrogate {
   PetscInt dim, n, trend;               /* trend: terms of b0 + b.x */
-  PetscReal mean, scale;                /* y = mean + scale * what is modelled */
+  PetscReal sign;                       /* of all y where their logarithms are modelled; 0: they are themselves */
+  PetscReal mean, scale;                /* y, or its logarithm, = mean + scale * what is modelled */
   PetscReal *x, *y;                     /* n x dim; n */
   PetscReal hyper[HYPER];               /* logarithms of lengths, and of the nugget */
   PetscReal *l;                         /* factor of K, n x n */
@@ -96,7 +100,8 @@ static PetscReal descend(Surrogate *s)
   return best;
 }
 
-static void search(Surrogate *s)
+/* Lengths and nugget; minus the logarithm of the likelihood. */
+static PetscReal search(Surrogate *s)
 {
   static const PetscReal lengths[] = {0.3, 1, 4}, nuggets[] = {1e-6, 1e-2};
   PetscReal best = INFINITY, hyper[HYPER] = {0};
@@ -109,7 +114,7 @@ static void search(Surrogate *s)
     for (PetscInt k = 0; k <= s->dim; ++k) hyper[k] = s->hyper[k];
   }
   for (PetscInt k = 0; k <= s->dim; ++k) s->hyper[k] = hyper[k];
-  (void)fit(s);
+  return fit(s);
 }
 
 /* The error at value i when it is predicted from all others, and its variance (per s^2), without
@@ -127,19 +132,30 @@ static PetscReal leave_out(const Surrogate *s, PetscInt i, PetscReal *column, Pe
   return dense_dot(n, column, s->r) / q;
 }
 
+/* What is modelled at mean 0 and mean square 1, as y. */
+static PetscReal as_value(const Surrogate *s, PetscReal modelled)
+{
+  const PetscReal value = s->mean + s->scale * modelled;
+  return s->sign != 0 ? s->sign * PetscExpReal(value) : value;
+}
+
+/* No run is farther from what all others tell of it than its own error, two deviations, nor are they all together
+ * farther than one. */
 static PetscErrorCode LeaveOneOut(Surrogate *s)
 {
-  PetscReal *column, row[TREND], variance, squares = 0, normal = 0;
+  PetscReal *column, row[TREND], variance, squares = 0, normal = 0, largest = 0;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc1(s->n, &column));
   for (PetscInt i = 0; i < s->n; ++i) {
     const PetscReal e = leave_out(s, i, column, row, &variance);
-    squares += e * e / (PetscReal)s->n;
-    normal += e * e / (variance * s->variance) / (PetscReal)s->n;
+    const PetscReal off = as_value(s, s->y[i]) - as_value(s, s->y[i] - e), square = e * e / (variance * s->variance);
+    squares += off * off / (PetscReal)s->n;
+    normal += square / (PetscReal)s->n;
+    largest = PetscMax(largest, square);
   }
-  s->left_out = s->scale * PetscSqrtReal(squares);
-  s->inflation = PetscMax(PetscSqrtReal(normal), 1);
+  s->left_out = PetscSqrtReal(squares);
+  s->inflation = PetscMax(PetscMax(PetscSqrtReal(normal), PetscSqrtReal(largest) / DEVIATIONS), 1);
   PetscCall(PetscFree(column));
   PetscFunctionReturn(0);
 }
@@ -148,15 +164,39 @@ static PetscErrorCode LeaveOneOut(Surrogate *s)
 static void normalise(Surrogate *s, const PetscReal *y)
 {
   PetscReal squares = 0;
-  for (PetscInt i = 0; i < s->n; ++i) s->mean += y[i] / (PetscReal)s->n;
-  for (PetscInt i = 0; i < s->n; ++i) squares += (y[i] - s->mean) * (y[i] - s->mean) / (PetscReal)s->n;
+  s->mean = 0;
+  for (PetscInt i = 0; i < s->n; ++i) s->y[i] = s->sign != 0 ? PetscLogReal(s->sign * y[i]) : y[i];
+  for (PetscInt i = 0; i < s->n; ++i) s->mean += s->y[i] / (PetscReal)s->n;
+  for (PetscInt i = 0; i < s->n; ++i) squares += (s->y[i] - s->mean) * (s->y[i] - s->mean) / (PetscReal)s->n;
   s->scale = PetscSqrtReal(squares);
   if (!(s->scale > 1e-12 * PetscAbsReal(s->mean))) s->scale = PetscMax(1e-12 * PetscAbsReal(s->mean), 1e-300);
-  for (PetscInt i = 0; i < s->n; ++i) s->y[i] = (y[i] - s->mean) / s->scale;
+  for (PetscInt i = 0; i < s->n; ++i) s->y[i] = (s->y[i] - s->mean) / s->scale;
+}
+
+/* Fit y, or the logarithm of y by its sign; minus the logarithm of the likelihood of y itself, which has the
+ * derivative of the logarithm, 1 / y. */
+static PetscReal learn(Surrogate *s, const PetscReal *y, PetscReal sign)
+{
+  PetscReal logarithms = 0;
+  s->sign = sign;
+  normalise(s, y);
+  for (PetscInt i = 0; i < s->n && sign != 0; ++i) logarithms += PetscLogReal(sign * y[i]) / (PetscReal)s->n;
+  return search(s) + (PetscReal)(s->n - s->trend) * (PetscLogReal(s->scale) + logarithms);
+}
+
+/* The sign of all values if the largest is more than twice the smallest: nearer to each other their logarithms have the
+ * same shape. 0: there is none. */
+static PetscReal common_sign(PetscInt n, const PetscReal *y)
+{
+  const PetscReal sign = y[0] > 0 ? 1 : -1;
+  PetscReal low = sign * y[0], high = low;
+  for (PetscInt i = 1; i < n; ++i) low = PetscMin(low, sign * y[i]), high = PetscMax(high, sign * y[i]);
+  return low > 0 && high > 2 * low ? sign : 0;
 }
 
 PetscErrorCode SurrogateCreate(PetscInt dim, PetscInt n, const PetscReal *x, const PetscReal *y, Surrogate **surrogate)
 {
+  const PetscReal sign = common_sign(n, y);
   Surrogate *s;
 
   PetscFunctionBeginUser;
@@ -169,8 +209,8 @@ PetscErrorCode SurrogateCreate(PetscInt dim, PetscInt n, const PetscReal *x, con
   s->trend = dim + 1;
   PetscCall(PetscMalloc5(n * dim, &s->x, n, &s->y, n * n, &s->l, n * s->trend, &s->h, n, &s->r));
   PetscCall(PetscArraycpy(s->x, x, n * dim));
-  normalise(s, y);
-  search(s);
+  const PetscReal by_value = learn(s, y, 0);
+  if (sign != 0 && !(learn(s, y, sign) < by_value)) (void)learn(s, y, 0);
   PetscCall(LeaveOneOut(s));
   dense_backward(n, s->l, s->r); /* from here on K^-1 (y - H b) */
   PetscFunctionReturn(0);
@@ -185,7 +225,7 @@ PetscErrorCode SurrogateDestroy(Surrogate **surrogate)
   PetscFunctionReturn(0);
 }
 
-void surrogate_at(const Surrogate *s, const PetscReal *x, PetscReal *value, PetscReal *deviation)
+void surrogate_at(const Surrogate *s, const PetscReal *x, PetscReal *value, PetscReal *error)
 {
   const PetscInt n = s->n, m = s->trend;
   PetscReal k[SURROGATE_RUNS], u[TREND], mean = 0, variance = 1 + PetscExpReal(s->hyper[s->dim]);
@@ -197,8 +237,9 @@ void surrogate_at(const Surrogate *s, const PetscReal *x, PetscReal *value, Pets
   for (PetscInt t = 0; t < m; ++t) u[t] = trend_term(x, t) - dense_dot(n, s->h + t * n, k);
   dense_forward(m, s->a, u);
   variance += dense_dot(m, u, u);
-  *value = s->mean + s->scale * mean;
-  *deviation = s->scale * s->inflation * PetscSqrtReal(s->variance * PetscMax(variance, 0));
+  *value = as_value(s, mean);
+  *error = DEVIATIONS * s->scale * s->inflation * PetscSqrtReal(s->variance * PetscMax(variance, 0));
+  if (s->sign != 0) *error = PetscAbsReal(*value) * PetscExpReal(PetscMin(*error, HUGE_ERROR)) - PetscAbsReal(*value);
 }
 
 PetscReal surrogate_left_out(const Surrogate *s) { return s->left_out; }

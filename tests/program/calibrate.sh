@@ -83,6 +83,36 @@ expect "out of reach" 3 "$talus" calibrate far.yaml --out far
 says out.txt "There is no region" "Nearest point: E = 500000 Pa"
 grep -q "^| free top | 600 +- 0.7 | 18[12]" far/report.md || fail "$name: $(cat far/report.md)"
 
+# Over two decades, by the logarithm: 91 +- 0.9 um in 0.990 to 1.010 MPa. And a range that is narrow beside its numbers: as many digits as tell them apart
+sed -e 's/^title.*/title: Wide/' -e 's/\[0.5e6, 2e6\]/[0.05e6, 10e6]/' -e 's/target: 600, uncertainty: 0.7/target: 91, uncertainty: 0.9/' far.yaml >wide.yaml
+expect "two decades" 0 "$talus" calibrate wide.yaml --out wide
+awk -F'[| ]+' '$2 == "E" && $3 > 0.988e6 && $3 < 0.992e6 && $5 > 1.008e6 && $5 < 1.012e6 {found = 1} END {exit !found}' wide/report.md || fail "$name: $(cat wide/report.md)"
+says out.txt "| 50000 to 1e+07, by the logarithm |" "of the points tried lie in it"
+cat >narrow.yaml <<'END'
+title: Narrow
+parameters: {p: {range: [1000.0, 1000.2], unit: Pa}}
+instruments:
+  free: {case: free.yaml, set: {"loads.tractions[0].value": [0, $p]}, measures: [{measure: floor, target: -1000.123, uncertainty: 0.01}]}
+points: 5
+rounds: 0
+END
+expect "a narrow range" 0 "$talus" calibrate narrow.yaml --out narrow
+says out.txt "| p | 1000.113 to 1000.133 Pa | 1000 to 1000.2 |" "| -1000.123 +- 0.01 | -1000.123 +- " " -1000.123 N |"
+awk -F, 'NR > 1 && !seen[$1]++ {++n} END {exit n < 600}' narrow/region.csv || fail "$name: points of the region are the same"
+
+# A wave from five runs: what is predicted is not what is found, and that is said
+sed 's/^  floor:.*/&\n  wave: {formula: sin(0.3 * floor)}/' free.yaml >wave-case.yaml
+cat >wave.yaml <<'END'
+title: A wave
+parameters: {p: {range: [-103, -60], unit: Pa}}
+instruments:
+  free: {case: wave-case.yaml, set: {"loads.tractions[0].value": [0, $p]}, measures: [{measure: wave, target: 0.5, uncertainty: 1e-4}]}
+points: 5
+rounds: 0
+END
+expect "not confirmed" 3 "$talus" calibrate wave.yaml --out wave
+says out.txt "What the predictions allow is not confirmed"
+
 expect "not run" 0 "$talus" calibrate block.yaml --out dry --dry
 says out.txt "14 sets of parameters, 28 runs, 0 done before"
 [ ! -e dry ] || fail "$name: something was written"
