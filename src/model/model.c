@@ -202,6 +202,14 @@ PetscErrorCode ModelDestroyFields(Model *m)
   PetscFunctionReturn(0);
 }
 
+/* Do bodies bring meshes into a grid whose nodes are free of these? */
+static PetscBool brings_meshes(const Model *m)
+{
+  for (PetscInt b = 0; b < m->c->n_bodies && m->method->restores_grid; ++b)
+    if (m->c->bodies[b].mesh && !m->c->bodies[b].absent) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Bodies become points, with the stress that they start with. */
 static PetscErrorCode CreateBodies(Model *m, Diag *diag)
 {
@@ -209,9 +217,10 @@ static PetscErrorCode CreateBodies(Model *m, Diag *diag)
   PetscInt errors;
 
   PetscFunctionBeginUser;
-  PetscCall(CreatePoints(m, case_has_stress(m->c) ? &outline : NULL, diag));
+  PetscCall(CreatePoints(m, case_has_stress(m->c) || brings_meshes(m) ? &outline : NULL, diag));
   PetscCall(SplitCheck(m, diag));
   PetscCall(DiagReduce(m->comm, diag, &errors));
+  if (!errors && brings_meshes(m)) PetscCall(AdviseOwnMeshes(m, &outline, diag));
   if (!errors) places_start(m);
   if (!errors) PetscCall(InitialStress(m, &outline, diag));
   for (PetscInt p = 0; p < m->points->n && !errors; ++p) size_start(m, p);

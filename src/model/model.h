@@ -228,6 +228,7 @@ typedef struct Model {
     PetscBool along[3]; /* did nothing but that hold a body along the axis when the run began? */
   } unheld;             /* directions of nodes that hold what nothing else does, in the step */
   Raised raised;
+  PetscReal uneven; /* what points of own meshes leave of a uniform stress out of balance, if it was told; else 0 */
   PetscReal seconds[PHASE_N]; /* see model_times */
 } Model;
 

@@ -341,6 +341,9 @@ PetscErrorCode ContactDescribe(const Model *model, StepReport *report);
 PetscErrorCode ModelAdvise(const Model *model, Diag *diag);
 /* Collective. The same of layers that share their cells, where strength is sought: start/thin.c. */
 PetscErrorCode AdviseThin(const Model *model, Diag *diag);
+/* own_mesh.c. Collective. The same of bodies' own meshes whose points do not add up to the cells of the grid; `outline`
+ * is that of all bodies as they are seeded. */
+PetscErrorCode AdviseOwnMeshes(Model *model, const Outline *outline, Diag *diag);
 /* Collective. The same of amplitudes that do more within a step than at its ends: start/pulse.c. */
 PetscErrorCode AdvisePulses(const Model *model, Diag *diag);
 /* The same of walls and held nodes that jump when dynamics begin: start/jumps.c. */

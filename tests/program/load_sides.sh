@@ -108,6 +108,39 @@ near base 3 785.398 1
 expect "no such group" 2 "$talus" check disk.yaml --set 'loads.tractions[0].on.boundary=ark'
 says err.txt "no boundary is named 'ark'" "did you mean 'arc'"
 
+# --- points of such a mesh, 0.125 m apart, stand as 2, 1, 2, 1, 2 in cells of 0.2 m: a third of a uniform stress ---
+cat >plate.geo <<'END'
+Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {1, 1, 0}; Point(4) = {0, 1, 0};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Curve Loop(1) = {1, 2, 3, 4};
+Plane Surface(1) = {1}; Transfinite Curve {1, 2, 3, 4} = 5; Transfinite Surface {1}; Recombine Surface {1};
+Physical Surface("d") = {1}; Physical Curve("top") = {3};
+END
+cat >plate.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+basis: {cell: {}}
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, 0], max: [1, 1]}, size: 0.2}
+bodies: [{name: d, mesh: plate.geo, points_per_cell: 4, material: m}]
+materials: {m: {law: mohr-coulomb, density: 1000, young: 1e9, poisson: 0.3, friction_angle: 0, cohesion: 1000}}
+boundary: [{on: {x: 0}, fix: [x]}, {on: {y: 0}, fix: [y]}]
+loads: {tractions: [{name: press, on: {body: d, boundary: top}, value: [0, -100]}]}
+END
+uneven="points of 'd' stand unevenly in the cells of the grid (2.6 in each): inside it 33 % of a uniform stress is out of balance"
+for ranks in 1 2 3; do
+  expect "uneven, $ranks" 0 on_ranks $ranks "$talus" check plate.yaml
+  says err.txt "plate.yaml:6:26: warning: $uneven" "points_per_cell, a finer mesh of the body, a coarser grid"
+done
+for fits in 'basis={gimp: {}}' grid.size=0.25 'bodies[0].points_per_cell=25'; do
+  expect "even, $fits" 0 "$talus" check plate.yaml --set "$fits"
+  lacks err.txt "points of 'd'"
+done
+expect "even, a ring" 0 "$talus" check plate.yaml --set kinematics=axisymmetric --set basis='{gimp: {}}'
+lacks err.txt "points of 'd'"
+turn
+expect "far apart" 0 on_ranks $ranks "$talus" check plate.yaml --set 'basis={gimp: {}}' --set grid.size=0.1
+says err.txt "warning: points of 'd' are farther apart than the cells of the grid (0.64 in a cell): nothing joins them"
+
 # --- a surface between two bodies: whichever of both the mesh has first, a pressure pushes the one that is named ---
 cat >two.geo <<'END'
 DefineConstant[up = {0}];

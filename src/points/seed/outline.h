@@ -46,3 +46,5 @@ PetscErrorCode OverburdenDestroy(Overburden **overburden);
 /* Mass above x, inside `body`, per area across `up`, kg/m2: of the body itself wherever it is, and
  * of others that lie on it, or on what lies on it. *top: height of the highest of it, m. */
 PetscErrorCode OverburdenAt(Overburden *overburden, PetscInt body, const PetscReal *x, PetscReal *mass, PetscReal *top);
+/* Is x inside the body, as cells with their faces have it? */
+PetscBool overburden_holds(Overburden *overburden, PetscInt body, const PetscReal *x);

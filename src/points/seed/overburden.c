@@ -256,13 +256,29 @@ static void climb(const Line *line, PetscReal from, const Crossing *to, PetscRea
   }
 }
 
+static Line line_from(Overburden *o, const PetscReal *x)
+{
+  Line line = {.overburden = o, .height = dot(o->dim, o->axis[2], x)};
+  for (PetscInt a = 0; a < o->dim - 1; ++a) line.at[a] = dot(o->dim, o->axis[a], x);
+  return line;
+}
+
+PetscBool overburden_holds(Overburden *o, PetscInt body, const PetscReal *x)
+{
+  Line line = line_from(o, x);
+  PetscInt left = 0;
+  cross(&line);
+  for (PetscInt k = 0; k < o->n_crossings; ++k)
+    if (o->crossing[k].slab->body == body) left += o->crossing[k].leaves;
+  return (PetscBool)(left > 0);
+}
+
 PetscErrorCode OverburdenAt(Overburden *o, PetscInt body, const PetscReal *x, PetscReal *mass, PetscReal *top)
 {
-  const PetscReal height = dot(o->dim, o->axis[2], x);
-  Line line = {.overburden = o, .height = height};
+  Line line = line_from(o, x);
+  const PetscReal height = line.height;
 
   PetscFunctionBeginUser;
-  for (PetscInt a = 0; a < o->dim - 1; ++a) line.at[a] = dot(o->dim, o->axis[a], x);
   cross(&line);
   for (PetscInt b = 0; b < o->n_bodies; ++b) o->depth[b] = 0, o->counts[b] = b == body;
   for (PetscInt k = 0; k < o->n_crossings; ++k) o->depth[o->crossing[k].slab->body] += o->crossing[k].leaves;

@@ -56,31 +56,6 @@ static PetscErrorCode CountBodies(const Model *m, BodyCount *count)
   PetscFunctionReturn(0);
 }
 
-/* Cells whose centre lies in the body's shape and that hold no point: gaps that the grid would see
- * as cracks. */
-static PetscErrorCode CountGaps(const Model *m, PetscInt body, PetscInt *gaps)
-{
-  const BodySpec *spec = &m->c->bodies[body];
-  const PetscInt field = m->grid->n_fields > 1 ? case_field(m->c, body) : 0;
-  PetscInt local = 0;
-  PetscReal centre[3];
-  PetscBool *filled;
-
-  PetscFunctionBeginUser;
-  *gaps = 0;
-  if (m->grid->cloud) PetscFunctionReturn(0); /* no cells, no gaps */
-  PetscCall(PetscCalloc1(m->grid->n_cells, &filled));
-  for (PetscInt p = 0; p < m->points->n; ++p) filled[m->points->cell[p]] = PETSC_TRUE;
-  for (PetscInt c = 0; spec->has_shape && c < m->grid->n_cells; ++c) {
-    if (grid_field_of(m->grid, c) != field) continue;
-    grid_cell_centre(m->grid, c, centre);
-    local += !filled[c] && shape_contains(&spec->shape, m->dim, centre, 0);
-  }
-  PetscCall(MPIU_Allreduce(&local, gaps, 1, MPIU_INT, MPI_SUM, m->comm));
-  PetscCall(PetscFree(filled));
-  PetscFunctionReturn(0);
-}
-
 /* Of the body as it is seeded: initial stress has changed the volume of its points since. */
 static PetscReal body_density(const Model *m, PetscInt body)
 {
@@ -116,7 +91,6 @@ static PetscErrorCode ReportFill(const Model *m, PetscInt body, PetscReal mass, 
 static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
 {
   BodyCount *count;
-  PetscInt gaps;
   char path[64];
 
   PetscFunctionBeginUser;
@@ -129,18 +103,12 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
         (int)count[b].cells, (double)count[b].volume, is_strained(m, b, &count[b]) ? " without stress" : "",
         (double)count[b].mass);
     PetscCall(ReportFill(m, b, count[b].mass, out));
-    PetscCall(CountGaps(m, b, &gaps));
     PetscCall(PetscSNPrintf(path, sizeof path, "bodies[%d]", (int)b));
     PetscMPIInt rank;
     PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
     if (rank) continue;
     if (count[b].on_faces)
       diag_warning(diag, path, "%d material points of '%s' lie on faces between cells", (int)count[b].on_faces, name);
-    if (gaps) {
-      diag_warning(diag, path, "%d cells inside '%s' hold no material point: the grid will see gaps there", (int)gaps,
-                   name);
-      diag_hint(diag, "use more points_per_cell, a finer mesh of the body, or a coarser grid");
-    }
   }
   PetscCall(PetscFree(count));
   PetscFunctionReturn(0);
