@@ -131,6 +131,9 @@ for ranks in 1 2 3; do
   expect "uneven, $ranks" 0 on_ranks $ranks "$talus" check plate.yaml
   says err.txt "plate.yaml:6:26: warning: $uneven" "points_per_cell, a finer mesh of the body, a coarser grid"
 done
+expect "uneven, as it is sought" 0 "$talus" run plate.yaml --out run --force --set 'analysis={type: limit-load, limit: {raise: press}}'
+says err.txt "$uneven"
+says out.txt "warning = what is told is unsafe: points stand unevenly in cells, 33 % of a uniform stress is out of balance"
 for fits in 'basis={gimp: {}}' grid.size=0.25 'bodies[0].points_per_cell=25'; do
   expect "even, $fits" 0 "$talus" check plate.yaml --set "$fits"
   lacks err.txt "points of 'd'"

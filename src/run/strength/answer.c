@@ -123,6 +123,18 @@ static PetscBool is_doubtful(const StrengthRun *s)
   return (PetscBool)(!flows || s->tries[last].moved < NEARLY_SLIDES * s->height * taken);
 }
 
+PetscErrorCode StrengthTellUneven(const Model *m, RunDir *dir)
+{
+  PetscFunctionBeginUser;
+  if (m->uneven > 0)
+    PetscCall(
+      RunDirLog(dir,
+                "warning = what is told is unsafe: points stand unevenly in cells, %.0f %% of a uniform stress is "
+                "out of balance",
+                (double)(100 * m->uneven)));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode TellAnswer(const StrengthRun *s, const Model *m, RunDir *dir)
 {
   const ReductionSpec *spec = &m->c->analysis.reduction;
@@ -156,6 +168,7 @@ PetscErrorCode StrengthEnd(const StrengthRun *s, Model *m, RunDir *dir)
 
   PetscFunctionBeginUser;
   strength_know_bracket(s, m);
+  PetscCall(StrengthTellUneven(m, dir));
   if (failed == 0)
     PetscCall(RunDirLog(dir, "factor of safety > %.4g: %s", (double)stable,
                         over ? "it stands with the largest factor that was asked for" : unfinished));

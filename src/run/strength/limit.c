@@ -263,6 +263,7 @@ PetscErrorCode LimitEnd(const LimitRun *s, Model *m, RunDir *dir)
   const char *what = found ? "limit load" : "largest load that was reached";
   m->raised.unfound = !found;
   m->raised.value = found || largest_load(s) != 0 ? largest_load(s) : NAN;
+  PetscCall(StrengthTellUneven(m, dir));
   PetscCall(RunDirLog(dir, "by energy = %.1f %% of the load's last work was stored", 100 * (double)share_stored(s)));
   if (!found && !PetscIsNanReal(m->raised.value))
     PetscCall(RunDirLog(dir, "warning = no limit was found: the load is the largest that was reached"));

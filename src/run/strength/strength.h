@@ -44,6 +44,8 @@ PetscErrorCode StrengthTry(StrengthRun *run, Model *model, RunDir *dir, StepRepo
 PetscErrorCode StrengthWrite(const StrengthRun *run, RunDir *dir);
 /* Collective. The answer: into the model for its measures, and into the log. */
 PetscErrorCode StrengthEnd(const StrengthRun *run, Model *model, RunDir *dir);
+/* answer.c. Of what is sought with points that do not balance a uniform stress. */
+PetscErrorCode StrengthTellUneven(const Model *model, RunDir *dir);
 /* answer.c. The last that stood before try i > 0. */
 PetscInt strength_stood_before(const StrengthRun *run, PetscInt i);
 /* What is known of the factor so far, for measures. */
