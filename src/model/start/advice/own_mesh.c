@@ -7,8 +7,8 @@
 #define WITHIN 1e-6 /* of a cell: its corners may lie on the body's surface, and a point may have all of it */
 #define LARGE 0.5   /* of the points: with so many larger than their cells nodes have too few, in balance or not */
 
-/* What may be out of balance: limit loads are too low by 1, 5, 8 and 14 % with 0.07, 0.10, 0.17 and 0.26 of it, linear
- * functions; displacements too large by 2, 3, 6 and 12 % with 0.08, 0.12, 0.16 and 0.17, gimp. In dynamics points cross
+/* What may be out of balance: limit loads are too low by 1, 3 to 7, 8 to 12 and 10 to 18 % with 0.07, 0.10, 0.17 and
+ * 0.26 of it, linear functions; displacements too large by 2, 3, 6 and 12 % with 0.08, 0.12, 0.16 and 0.17, gimp. In dynamics points cross
  * cells anyway. */
 #define MOST 0.08
 #define MOST_IN_DYNAMICS 0.3
