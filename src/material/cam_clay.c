@@ -146,6 +146,7 @@ static inline PetscBool clay_return(const PetscReal *m, Clay *s, PetscBool *plas
   s->pc = s->pc_old;
   s->ratio = 1.0;
   if (!(s->p > LEAST && s->p < MOST && s->pc > LEAST)) return PETSC_FALSE; /* p_c = 0: nobody gave it a stress */
+  if (!(m[CC_LAMBDA] > m[CC_KAPPA])) return PETSC_FALSE; /* lambda has fallen below the kappa of the step's start */
   slope[0] = s->p / m[CC_KAPPA];
   slope[1] = slope[2] = 0.0;
   slope[3] = 3.0 * m[CC_MU];

@@ -191,9 +191,11 @@ PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Materi
 /* The same with the factors that its amplitudes have at time t; what is wrong with them MaterialResolve has
  * said before. */
 PetscErrorCode MaterialAt(const Case *c, PetscInt index, PetscReal t, Diag *diag, Material *material);
-/* All of its constants but elastic ones and the density become those of the same material at another time; of
- * a law that says itself how stiff it is, none. */
+/* All of its constants but elastic ones and the density become those of the same material at another time. Elastic
+ * ones of a law that says itself how stiff it is are those on which its moduli depend. */
 void material_take_strength(Material *material, const Material *other);
+/* Have both the same law and elastic constants, so that states of one are states of the other? */
+PetscBool material_as_stiff(const Material *a, const Material *b);
 /* Is the tangent symmetric? strength_varies: also with c and tan phi over any factor, where psi may stay behind phi. */
 PetscBool material_symmetric(const Material *material, PetscBool strength_varies);
 /* Divide the strength of a material by factor (0: it does not yield); that of the case is factor 1. */

@@ -364,9 +364,41 @@ void material_reduce(Material *m, PetscReal factor)
   prepare_again(m, reduced);
 }
 
+/* Is parameter k of a law that says itself how stiff it is one by which it does? Of any other law none is. */
+static PetscBool stiffens(const Material *m, int k, PetscReal value)
+{
+  PetscReal given[LAW_MAX_PARAMETERS], before[2], after[2];
+  if (!m->law->elastic || value == m->given[k]) return PETSC_FALSE;
+  memcpy(given, m->given, sizeof given);
+  given[k] = value;
+  m->law->elastic(m->given, before);
+  m->law->elastic(given, after);
+  return (PetscBool)(before[0] != after[0] || before[1] != after[1]);
+}
+
 void material_take_strength(Material *m, const Material *other)
 {
-  if (m->law->elastic) return; /* its stiffness and its strength are the same constants */
-  memcpy(m->given, other->given, sizeof m->given);
+  PetscReal given[LAW_MAX_PARAMETERS];
+  memcpy(given, m->given, sizeof given);
+  for (int k = 0; m->law->parameters[k].name; ++k)
+    if (!stiffens(m, k, other->given[k])) given[k] = other->given[k];
+  memcpy(m->given, given, sizeof given);
   prepare_again(m, m->given);
+}
+
+/* Constants that are found from others, or between two times, have no more digits. */
+#define SAME_CONSTANT (8 * PETSC_MACHINE_EPSILON)
+
+static PetscBool same_constant(PetscReal a, PetscReal b)
+{
+  return (PetscBool)(a == b || PetscAbsReal(a - b) <= SAME_CONSTANT * PetscMin(PetscAbsReal(a), PetscAbsReal(b)));
+}
+
+PetscBool material_as_stiff(const Material *a, const Material *b)
+{
+  if (a->law != b->law) return PETSC_FALSE;
+  for (int k = 0; a->law->parameters[k].name; ++k) /* two that change may leave the moduli what they were */
+    if (!same_constant(a->given[k], b->given[k]) && stiffens(a, k, b->given[k])) return PETSC_FALSE;
+  return (PetscBool)(same_constant(a->elastic.bulk, b->elastic.bulk) &&
+                     same_constant(a->elastic.shear, b->elastic.shear));
 }

@@ -47,8 +47,6 @@ PetscErrorCode TakeTracers(Model *model, const Tables *tables, const Case *from,
 PetscErrorCode BeginTracers(Model *model, const Case *from, Diag *diag);
 /* Collective. Measures that begin with the stage begin where the model now stands. */
 PetscErrorCode BeginMeasures(Model *model, const Case *from);
-/* Have both the same law and elastic constants, so that states of one are states of the other? */
-PetscBool material_as_stiff(const Material *a, const Material *b);
 /* The stress of point p stays, in the state of another law or of other constants, and so do its place and its
  * shape; PETSC_FALSE: there is no such state. */
 PetscBool point_swap(Points *points, PetscInt p, const Material *was, const Material *is);

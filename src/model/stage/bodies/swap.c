@@ -3,20 +3,6 @@
 #include "material/pressure.h"
 #include "model/start/initial_stress.h"
 
-/* Constants that are found from others, or between two times, have no more digits. */
-#define SAME_CONSTANT (8 * PETSC_MACHINE_EPSILON)
-
-static PetscBool same_constant(PetscReal a, PetscReal b)
-{
-  return (PetscBool)(a == b || PetscAbsReal(a - b) <= SAME_CONSTANT * PetscMin(PetscAbsReal(a), PetscAbsReal(b)));
-}
-
-PetscBool material_as_stiff(const Material *a, const Material *b)
-{
-  return (PetscBool)(a->law == b->law && same_constant(a->elastic.bulk, b->elastic.bulk) &&
-                     same_constant(a->elastic.shear, b->elastic.shear));
-}
-
 /* Numbers of history that both laws know by the same name, but for what this one counts by itself; are there any? */
 static PetscBool keep_history(const Law *was, const PetscReal *before, const Law *is, PetscReal *state)
 {
