@@ -72,10 +72,17 @@ void stress_tell_none(const Case *c, PetscInt b, const Law *law, Diag *diag);
 void equilibrium_check(const Model *model, Diag *diag);
 /* Does everything stay where it is, and only stresses change? */
 PetscBool equilibrium_stays(const Model *model);
-/* Collective. Forces out of balance at dofs that are not fixed over what acts there, `weight` (N) at least; where none
- * does, over what holds the others. force: less the external ones, n_nodes x dim, owners count. */
-PetscErrorCode LackOfBalance(const Model *model, const unsigned char *fixed, const PetscReal *force, PetscReal weight,
-                             PetscReal *lack);
+/* Forces before anything moves, in the frames: n_nodes x dim, N, owners count. */
+typedef struct {
+  const unsigned char *fixed;
+  const PetscReal *force;    /* of the stress, less the external ones */
+  const PetscReal *external; /* loads, and what walls, interfaces and constraints give */
+  const PetscReal *acting;   /* loads alone, pressures too */
+  PetscReal weight;          /* norm */
+} AtRest;
+/* Collective (start/lack.c). Forces out of balance at dofs that are not fixed over what acts there; where nothing does,
+ * over what holds the others, walls and interfaces too; where nothing holds, over what the stress asks of nodes. */
+PetscErrorCode LackOfBalance(const Model *model, const AtRest *at, PetscReal *lack);
 /* Collective. While it is sought: how much is lacking, and forces that hold what is to be taken away later. */
 PetscErrorCode EquilibriumPrepare(Model *model, StepProblem *problem);
 /* Acceleration now from the balance of momentum with lumped mass, so that a body in free fall

@@ -8,8 +8,9 @@
 /* of the weight: what quadrature among the functions of a cloud leaves of a stress that balances */
 #define OF_CLOUDS 1e-2
 
-/* of the weight: no stress at all lacks 1 */
+/* of what acts: no stress at all lacks 1; and of what holds where nothing acts: none lacks nothing */
 #define MORE_THAN_NONE 1.05
+#define HELD_BY_NOTHING 0.5
 
 /* Where most of a body was to begin with a stress that it cannot bear, something else was meant. */
 static PetscErrorCode TellStress(const Model *m, RunDir *dir)
@@ -35,17 +36,23 @@ static PetscBool gives_stress(const Case *c)
   return PETSC_FALSE;
 }
 
+static PetscBool weighs(const Case *c)
+{
+  return (PetscBool)(c->gravity[0] != 0 || c->gravity[1] != 0 || c->gravity[2] != 0);
+}
+
 /* By what the lack of balance is measured (LackOfBalance). */
 static const char *measured_by(const Case *c)
 {
-  const PetscBool weighs = (PetscBool)(c->gravity[0] != 0 || c->gravity[1] != 0 || c->gravity[2] != 0);
-  return weighs ? "the weight" : "the forces that act";
+  return weighs(c) && !case_acting_loads(c) ? "the weight" : "the forces that act";
 }
 
 static PetscErrorCode TellLack(const Run *r, PetscReal lacked)
 {
+  const PetscBool acts = (PetscBool)(weighs(r->c) || case_acting_loads(r->c) > 0);
+
   PetscFunctionBeginUser;
-  if (lacked <= MORE_THAN_NONE || !case_has_stress(r->c)) PetscFunctionReturn(0);
+  if (lacked <= (acts ? MORE_THAN_NONE : HELD_BY_NOTHING) || !case_has_stress(r->c)) PetscFunctionReturn(0);
   PetscCall(RunDirLog(r->dir,
                       "warning = the initial stress leaves %.3g of %s out of balance, more than no stress would%s",
                       (double)lacked, measured_by(r->c), gives_stress(r->c) ? ": compression is negative" : ""));

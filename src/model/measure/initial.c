@@ -2,8 +2,10 @@
 #include "model/measure/measure.h"
 
 static const MeasureNumber *const words[] = {
-  WORD("lacked", "norm of the forces out of balance as given, over that of the weight; nan without a given stress", "",
-       OF_MODEL, .kept = offsetof(Model, initial.lacked)),
+  WORD("lacked",
+       "norm of the forces out of balance as given, over that of the weight or of the loads; without these of what "
+       "walls, interfaces and boundaries bear; nan without a given stress",
+       "", OF_MODEL, .kept = offsetof(Model, initial.lacked)),
   WORD("left", "the same in the equilibrium; nan where none was sought", "", OF_MODEL,
        .kept = offsetof(Model, initial.left)),
   WORD("moved", "largest displacement on the way there, likewise", "m", OF_MODEL,

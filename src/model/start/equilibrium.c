@@ -9,37 +9,31 @@
  * that have moved give other nodes what they bear */
 #define WORTH 0.5
 
-PetscErrorCode LackOfBalance(const Model *m, const unsigned char *fixed, const PetscReal *force, PetscReal weight,
-                             PetscReal *lack)
-{
-  const PetscReal *external = m->nodes->external;
-  PetscReal local[3] = {0, 0, 0}, sum[3];
-
-  PetscFunctionBeginUser;
-  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
-    local[fixed[i] ? 2 : 0] += force[i] * force[i];
-    if (!fixed[i]) local[1] += external[i] * external[i];
-  }
-  PetscCall(MPIU_Allreduce(local, sum, 3, MPIU_REAL, MPI_SUM, m->comm));
-  const PetscReal acts = PetscMax(weight, PetscSqrtReal(sum[1])), scale = acts > 0 ? acts : PetscSqrtReal(sum[2]);
-  *lack = scale > 0 ? PetscSqrtReal(sum[0]) / scale : 0;
-  PetscFunctionReturn(0);
-}
-
 /* What forces lack at nodes that are free, before anything moves: n_nodes x dim, owners count. */
 static PetscErrorCode Lack(Model *m, StepProblem *p, PetscReal *force, PetscReal *lack)
 {
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  PetscReal *acting, *external;
   WeakFormOutput out = {.force = force};
-  const NodalOutput acting = {.force = force};
 
   PetscFunctionBeginUser;
+  PetscCall(PetscCalloc2(dofs, &acting, dofs, &external));
   pressure_guess(m);
   PetscCall(m->formulation->assemble(&p->in, &out));
-  PetscCall(NodalForcesAssemble(p->forces, &p->scene, &acting));
+  PetscCall(NodalForcesAssemble(p->forces, &p->scene, &(NodalOutput){.force = external}));
+  for (PetscInt i = 0; i < dofs; ++i) force[i] += external[i];
   PetscCall(GridSumToOwners(m->grid, m->dim, force));
+  PetscCall(GridSumToOwners(m->grid, m->dim, external));
+  PetscCall(NodalForcesExternal(p->forces, &p->scene, PETSC_TRUE, acting));
   frames_turn(&m->boundary->frames, m->dim, force);
-  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) force[i] -= p->external[i];
-  PetscCall(LackOfBalance(m, p->fixed, force, p->weight, lack));
+  frames_turn(&m->boundary->frames, m->dim, external);
+  frames_turn(&m->boundary->frames, m->dim, acting);
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
+    force[i] -= p->external[i];
+    external[i] = p->external[i] - external[i];
+  }
+  PetscCall(LackOfBalance(m, &(AtRest){p->fixed, force, external, acting, p->weight}, lack));
+  PetscCall(PetscFree2(acting, external));
   PetscFunctionReturn(0);
 }
 

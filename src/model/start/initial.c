@@ -96,6 +96,7 @@ static PetscErrorCode TellLack(Model *m)
   const Case *c = m->c;
   const PetscBool given = (PetscBool)(c->stage == 0 && !c->initial.run && case_has_stress(c));
   PetscInt constrained = 0;
+  PetscReal *acting;
   StepProblem p;
 
   PetscFunctionBeginUser;
@@ -105,7 +106,13 @@ static PetscErrorCode TellLack(Model *m)
   gravity_at(c, m->time, m->gravity);
   mark_fixed(m);
   PetscCall(ForceScales(m, m->gravity, 1, &p));
-  PetscCall(LackOfBalance(m, m->nodes->fixed, m->nodes->force, p.weight, &m->initial.lacked));
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  PetscCall(PetscMalloc1(m->grid->n_nodes * m->dim, &acting));
+  PetscCall(NodalForcesExternal(&m->forces, &scene, PETSC_TRUE, acting));
+  frames_turn(&m->boundary->frames, m->dim, acting);
+  const AtRest at = {m->nodes->fixed, m->nodes->force, m->nodes->external, acting, p.weight};
+  PetscCall(LackOfBalance(m, &at, &m->initial.lacked));
+  PetscCall(PetscFree(acting));
   PetscFunctionReturn(0);
 }
 
