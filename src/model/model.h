@@ -133,6 +133,7 @@ typedef struct {
   PetscReal iterations;
   PetscReal share;   /* of what is lacking that the present step takes away */
   PetscBool seeking; /* equilibrium: time stands still */
+  PetscBool acts;    /* did weight or loads act as it began? else what lacked is a share of what held */
 } InitialState;
 #define INITIAL_KEPT 7
 

@@ -80,9 +80,10 @@ typedef struct {
   const PetscReal *acting;   /* loads alone, pressures too */
   PetscReal weight;          /* norm */
 } AtRest;
-/* Collective (start/lack.c). Forces out of balance at dofs that are not fixed over what acts there; where nothing does,
- * over what holds the others, walls and interfaces too; where nothing holds, over what the stress asks of nodes. */
-PetscErrorCode LackOfBalance(const Model *model, const AtRest *at, PetscReal *lack);
+/* Collective (start/lack.c). Forces out of balance at dofs that are not fixed over what acts there; where nothing does
+ * (initial.acts), over what holds the others, walls and interfaces too; where nothing holds, over what the stress asks
+ * of nodes. */
+PetscErrorCode LackOfBalance(Model *model, const AtRest *at, PetscReal *lack);
 /* Collective. While it is sought: how much is lacking, and forces that hold what is to be taken away later. */
 PetscErrorCode EquilibriumPrepare(Model *model, StepProblem *problem);
 /* Acceleration now from the balance of momentum with lumped mass, so that a body in free fall

@@ -36,26 +36,24 @@ static PetscBool gives_stress(const Case *c)
   return PETSC_FALSE;
 }
 
-static PetscBool weighs(const Case *c)
-{
-  return (PetscBool)(c->gravity[0] != 0 || c->gravity[1] != 0 || c->gravity[2] != 0);
-}
-
 /* By what the lack of balance is measured (LackOfBalance). */
-static const char *measured_by(const Case *c)
+static const char *measured_by(const Run *r)
 {
-  return weighs(c) && !case_acting_loads(c) ? "the weight" : "the forces that act";
+  const Case *c = r->c;
+  const PetscBool weighs = (PetscBool)(c->gravity[0] != 0 || c->gravity[1] != 0 || c->gravity[2] != 0);
+  return r->model->initial.acts && weighs && !case_acting_loads(c) ? "the weight" : "the forces that act";
 }
 
 static PetscErrorCode TellLack(const Run *r, PetscReal lacked)
 {
-  const PetscBool acts = (PetscBool)(weighs(r->c) || case_acting_loads(r->c) > 0);
+  const PetscBool acts = r->model->initial.acts;
 
   PetscFunctionBeginUser;
   if (lacked <= (acts ? MORE_THAN_NONE : HELD_BY_NOTHING) || !case_has_stress(r->c)) PetscFunctionReturn(0);
-  PetscCall(RunDirLog(r->dir,
-                      "warning = the initial stress leaves %.3g of %s out of balance, more than no stress would%s",
-                      (double)lacked, measured_by(r->c), gives_stress(r->c) ? ": compression is negative" : ""));
+  PetscCall(RunDirLog(
+    r->dir, "warning = the initial stress leaves %.3g of %s out of balance, more than no stress would%s%s",
+    (double)lacked, measured_by(r), gives_stress(r->c) ? ": compression is negative" : "",
+    acts ? "" : "; neither weight nor load acts at the start (loads of statics grow from 0 without an `amplitude`)"));
   PetscFunctionReturn(0);
 }
 
@@ -70,8 +68,7 @@ static PetscErrorCode TellNone(const Run *r)
   PetscFunctionBeginUser;
   if (!case_has_stress(r->c)) PetscFunctionReturn(0);
   if (!PetscIsNanReal(lacked))
-    snprintf(what, sizeof what, "%.3g of %s is out of balance%s", (double)lacked, measured_by(r->c),
-             moves ? " and" : "");
+    snprintf(what, sizeof what, "%.3g of %s is out of balance%s", (double)lacked, measured_by(r), moves ? " and" : "");
   PetscCall(RunDirLog(
     r->dir, "%s: %s%s",
     warns ? "warning = this method seeks no equilibrium before the first step" : "initial equilibrium = none is sought",
@@ -97,18 +94,18 @@ PetscErrorCode RunEquilibrate(Run *r)
     PetscCall(RunDirLog(r->dir,
                         "initial equilibrium = lacked %.3g of %s, left %.2g; moved %.3g m at most; parts = %d "
                         "iterations = %d",
-                        (double)s->lacked, measured_by(r->c), (double)s->left, (double)s->moved, (int)s->parts,
+                        (double)s->lacked, measured_by(r), (double)s->left, (double)s->moved, (int)s->parts,
                         (int)s->iterations));
     PetscCall(TellLack(r, s->lacked));
     if (s->left > ROUND_OFF)
       PetscCall(RunDirLog(r->dir, "warning = points that move still bring %.2g of %s out of balance", (double)s->left,
-                          measured_by(r->c)));
+                          measured_by(r)));
     PetscFunctionReturn(0);
   }
   snprintf(text, sizeof text,
            "there is no equilibrium to begin with: %.3g of %s was out of balance, %.3g still is (%s): smaller "
            "cells lack less, and `initial: {equilibrium: none}` begins without one",
-           (double)s->lacked, measured_by(r->c), (double)s->left,
+           (double)s->lacked, measured_by(r), (double)s->left,
            report.outcome == STEP_TOO_SMALL ? report.newton.reason : "points left the grid");
   PetscCall(TellLack(r, s->lacked));
   PetscCall(RunDirLog(r->dir, "gave up = %s", text));

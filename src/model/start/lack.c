@@ -17,7 +17,7 @@ static PetscReal stress_forces2(const Model *m)
   return sum;
 }
 
-PetscErrorCode LackOfBalance(const Model *m, const AtRest *at, PetscReal *lack)
+PetscErrorCode LackOfBalance(Model *m, const AtRest *at, PetscReal *lack)
 {
   enum { LACKS, ACTS, HOLDS, STRESS, N };
   PetscReal local[N] = {0}, sum[N];
@@ -34,6 +34,7 @@ PetscErrorCode LackOfBalance(const Model *m, const AtRest *at, PetscReal *lack)
   PetscCall(MPIU_Allreduce(local, sum, N, MPIU_REAL, MPI_SUM, m->comm));
   const PetscReal stress = PetscSqrtReal(sum[STRESS]), acts = PetscMax(at->weight, PetscSqrtReal(sum[ACTS])),
                   holds = PetscSqrtReal(sum[HOLDS]), nothing = NOTHING * stress;
+  m->initial.acts = (PetscBool)(acts > nothing);
   const PetscReal scale = acts > nothing ? acts : holds > nothing ? holds : stress;
   *lack = scale > 0 ? PetscSqrtReal(sum[LACKS]) / scale : 0;
   PetscFunctionReturn(0);
