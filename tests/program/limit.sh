@@ -168,8 +168,27 @@ for ranks in 1 3; do
   awk -F, 'END { exit !($3 > 13.862 && $3 < 13.883) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
 done
 
-# A thick sphere of the same soil: all of its stresses stand on edges, and steps become tiny at the limit, 4 c ln(b / a) = 4.3944 and 5 % more on
-# these cells. With a law that has no edges they do not
+# A circular footing on clay of quarters of its radius, E / c = 1e5, by a pressure: as by a traction, 6.703, in some thirty steps (1741: its force
+# was none of those that a residual is measured by, and a first guess at rest was taken for progress).
+cat >circle.yaml <<'END'
+kinematics: axisymmetric
+method: fem
+analysis: {type: limit-load, limit: {raise: footing, step: 0.5}}
+grid: {box: {min: [0, -1.5], max: [2.5, 0]}, size: 0.25, cell: quadrilateral}
+bodies: [{name: ground, shape: {box: {min: [0, -1.5], max: [2.5, 0]}}, material: soil}]
+materials: {soil: {law: mohr-coulomb, density: 2000, young: 1e9, poisson: 0.49, friction_angle: 0, cohesion: 1e4}}
+boundary: [{on: {y: -1.5}, fix: [x, y]}, {on: {x: 0}, fix: [x]}, {on: {x: 2.5}, fix: [x]}]
+loads: {pressures: [{name: footing, on: {body: ground, y: 0, x: [0, 0.5]}, value: 1e4}]}
+measures: {limit: {limit_load: value}}
+output: {every: end}
+END
+expect "a footing by a pressure" 0 "$talus" run circle.yaml --out circle --force
+says out.txt "by load = it holds"
+awk -F, 'END { exit !($NF > 6.67 && $NF < 6.72) }' circle/history.csv || fail "$name: $(tail -n 1 circle/history.csv)"
+[ "$(wc -l <circle/limit.csv)" -lt 50 ] || fail "$name: $(wc -l <circle/limit.csv) steps"
+
+# A thick sphere of the same soil: all of its stresses stand on edges; 4 c ln(b / a) = 4.3944 and 5 % more on these cells. Where Newton's method
+# may take few iterations steps become tiny at the limit
 cat >sphere.geo <<'END'
 Point(1)={0,0,0};Point(2)={1,0,0};Point(3)={3,0,0};Point(4)={0,3,0};Point(5)={0,1,0};
 Line(1)={2,3};Circle(2)={3,1,4};Line(3)={4,5};Circle(4)={5,1,2};
@@ -190,13 +209,14 @@ loads: {pressures: [{name: p, on: {boundary: in}, value: 1e5}]}
 measures: {limit: {limit_load: value}, load: {limit_load: load}}
 END
 for ranks in 2; do
-  expect "a sphere on $ranks" 0 on_ranks $ranks timeout 120 "$talus" run sphere.yaml --out run --force
+  expect "a sphere on $ranks" 0 on_ranks $ranks timeout 120 "$talus" run sphere.yaml --out run --force --set newton.max_iterations=10
   says out.txt "by load = it holds: as in the last 50 steps, which are tiny, it would grow by" "limit load = 4."
   lacks out.txt "no limit was found"
   awk -F, 'END { exit !($3 > 4.6 && $3 < 4.62 && NR < 250) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
 done
-expect "a sphere without edges" 0 "$talus" run sphere.yaml --out run --force --set 'materials.clay={law: j2, density: 1, young: 1e9, poisson: 0.3, yield_stress: 2e5}'
+expect "a sphere in few steps" 0 "$talus" run sphere.yaml --out run --force
 says out.txt "by load = it holds: it grew by"
+awk -F, 'END { exit !($3 > 4.6 && $3 < 4.62 && NR < 60) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
 
 # What cannot yield slides at mu rho g V = 8 kN, 16 times what pushes, and does not lock
 cat >slides.yaml <<'END'

@@ -70,12 +70,16 @@ static PetscBool is_too_far(const Newton *n, PetscReal snorm)
 }
 
 /* An iteration that wanders between the sides of yield surfaces, as most that fail do after ten to
- * fifteen iterations, and few that would come through (counted in docs/experiments/newton.md). */
-static PetscBool is_stuck(const PetscReal *residual, PetscInt first, PetscInt k)
+ * fifteen iterations, and few that would come through (counted in docs/experiments/newton.md). What is there before it
+ * is no measure of progress if multipliers were renewed there, or if the load has still to do its work: a guess at rest
+ * is the last step's equilibrium. */
+static PetscBool is_stuck(const Newton *n, PetscInt k)
 {
+  const PetscReal *residual = n->report->residual;
+  const PetscInt first = n->changed, counts = first + (first > 0 || n->problem->border);
   PetscReal before = PETSC_MAX_REAL, lately = PETSC_MAX_REAL;
   if (k - first < STUCK_AFTER || k >= NEWTON_HISTORY || residual[k] <= STUCK_ABOVE) return PETSC_FALSE;
-  for (PetscInt i = first + (first > 0); i <= k - STUCK_WINDOW; ++i) before = PetscMin(before, residual[i]);
+  for (PetscInt i = counts; i <= k - STUCK_WINDOW; ++i) before = PetscMin(before, residual[i]);
   for (PetscInt i = k - STUCK_WINDOW + 1; i <= k; ++i) lately = PetscMin(lately, residual[i]);
   return lately > STUCK_GAIN * before;
 }
@@ -147,7 +151,7 @@ PetscErrorCode NewtonConverged(SNES snes, PetscInt it, PetscReal xnorm, PetscRea
   else if (floored) *reason = SNES_DIVERGED_INNER;
   else if (it > 0 && is_too_far(n, snorm)) *reason = SNES_DIVERGED_FUNCTION_DOMAIN;
   else if (k > 2 && relative > 1e8) *reason = SNES_DIVERGED_DTOL;
-  else if (is_stuck(r->residual, n->changed, k)) *reason = SNES_DIVERGED_LOCAL_MIN;
+  else if (is_stuck(n, k)) *reason = SNES_DIVERGED_LOCAL_MIN;
   n->before = it > 0 ? n->last : 0;
   n->last = fnorm;
   if (it == 1) n->calm = newton_fell(n);

@@ -11,6 +11,14 @@ static PetscReal external_force(const StepProblem *p, PetscInt i)
   return p->external[i] + (b && !b->follows ? (b->factor - b->start) * b->load[i] : 0);
 }
 
+/* On dof i, of a load that follows the surface: it is assembled with what else acts, and yet one of the loads that a
+ * residual is measured by, on the surface of the step's start. */
+static PetscReal following_force(const StepProblem *p, PetscInt i)
+{
+  const LoadBorder *b = p->border;
+  return b && b->follows ? b->factor * b->load[i] : 0;
+}
+
 /* Internal and inertia forces -> residual. Nodes without unknowns have no forces: they are often most of a grid, and
  * are left alone. */
 static void balance(const StepProblem *p)
@@ -29,7 +37,7 @@ PetscErrorCode NewtonWeigh(Newton *n)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < p->system->n_active; ++k)
     for (PetscInt d = 0, i = p->system->active[k] * dim; d < dim; ++d, ++i) {
-      const PetscReal external = external_force(p, i);
+      const PetscReal external = external_force(p, i) + following_force(p, i);
       if (p->fixed[i]) local[0] += p->force[i] * p->force[i];
       else local[1] += external * external;
     }
