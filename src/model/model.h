@@ -300,6 +300,8 @@ PetscErrorCode ModelRaise(Model *model, PetscReal control, StepReport *report);
 /* Collective. What the rise of its materials' strength did in the plastic strain of the last step, J: in a steady
  * mechanism the rise of the load does as much in its displacement (docs/theory.md, "Limit loads"). */
 PetscErrorCode RaisedHardening(const Model *model, PetscReal *work);
+/* Does any material harden by more than the tolerance of a limit that is sought? */
+PetscBool raised_hardens(const Model *model);
 /* Collective. After all loads are on: one step to the equilibrium with a larger factor. It stands if
  * Newton finds one in which no node has moved farther than strength.reach; if not, the model is as it
  * was, and report->leap says how far it slid, if that was why. *moved: the largest increment of a node,

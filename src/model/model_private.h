@@ -336,8 +336,6 @@ PetscErrorCode CloudBeyondFaces(const Model *model, const PetscReal *body, unsig
 /* Collective. After the first step's clouds are known: tell which bodies hang on an obstacle from
  * the start. */
 PetscErrorCode ModelWarnOfObstacles(const Model *model, Diag *diag);
-/* limit_load.c. Does any material harden by more than the tolerance of a limit that is sought? */
-PetscBool raised_hardens(const Model *model);
 /* limit.c. Collective. After every accepted step: how soft has the body become? */
 PetscErrorCode LimitWatch(Model *model, PetscReal dt);
 /* Collective. Add to the reason of a static run that gives up that it may be at a limit load, if it

@@ -169,7 +169,8 @@ for ranks in 1 3; do
 done
 
 # A circular footing on clay of quarters of its radius, E / c = 1e5, by a pressure: as by a traction, 6.703, in some thirty steps (1741: its force
-# was none of those that a residual is measured by, and a first guess at rest was taken for progress).
+# was none of those that a residual is measured by, and a first guess at rest was taken for progress). With E / c = 1e4 a traction rises with
+# the settlement for ever, and is the one of the knee; a search ends with its steps; without tension the first step has an equilibrium
 cat >circle.yaml <<'END'
 kinematics: axisymmetric
 method: fem
@@ -186,6 +187,26 @@ expect "a footing by a pressure" 0 "$talus" run circle.yaml --out circle --force
 says out.txt "by load = it holds"
 awk -F, 'END { exit !($NF > 6.67 && $NF < 6.72) }' circle/history.csv || fail "$name: $(tail -n 1 circle/history.csv)"
 [ "$(wc -l <circle/limit.csv)" -lt 50 ] || fail "$name: $(wc -l <circle/limit.csv) steps"
+sed 's/pressures/tractions/; s/value: 1e4}\]/value: [0, -1e4]}]/' circle.yaml >dead.yaml
+expect "a load that creeps on" 0 "$talus" run dead.yaml --out circle --force --set materials.soil.young=1e8
+says out.txt "by load = it creeps on" "by creep = " "limit load = 6.7"
+lacks out.txt "no limit was found"
+expect "as many steps as it may take" 0 "$talus" run circle.yaml --out circle --force --set analysis.limit.steps=9
+says out.txt "by load = it still rises after as many steps as the search may take (analysis.limit.steps)" "by bracket = between 4.1" "warning = no limit"
+[ "$(wc -l <circle/limit.csv)" -eq 11 ] || fail "$name: $(wc -l <circle/limit.csv) lines"
+cat >cracks.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: limit-load, limit: {raise: gravity, steps: 4}}
+grid: {box: {min: [0, 0], max: [2, 1.5]}, size: 0.125}
+bodies: [{name: cut, shape: {polygon: [[0, 0], [2, 0], [2, 0.5], [1, 0.5], [1, 1.5], [0, 1.5]]}, material: soil}]
+materials: {soil: {law: mohr-coulomb, density: 1000, young: 1e8, poisson: 0.49, friction_angle: 0, cohesion: 1e4, tension_cutoff: 0}}
+boundary: [{on: {y: 0}, fix: [x, y]}, {on: {x: 0}, fix: [x]}, {on: {x: 2}, fix: [x]}]
+loads: {gravity: [0, -10]}
+END
+expect "no tension" 0 "$talus" run cracks.yaml --out cracks --force
+lacks out.txt "halved"
+awk -F, 'END { exit !($2 > 0.07 && $2 < 0.08) }' cracks/limit.csv || fail "$name: $(tail -n 1 cracks/limit.csv)"
 
 # A thick sphere of the same soil: all of its stresses stand on edges; 4 c ln(b / a) = 4.3944 and 5 % more on these cells. Where Newton's method
 # may take few iterations steps become tiny at the limit

@@ -72,6 +72,7 @@ typedef struct {
   PetscReal step;      /* the first: factor of the load while it is small, of the prescribed displacement */
   PetscReal tolerance; /* by which the load may have grown while the displacement doubled */
   PetscReal most;      /* factor beyond which nobody looks */
+  PetscInt steps;      /* the search ends after so many */
 } LimitSpec;
 
 typedef struct {

@@ -14,6 +14,9 @@
 #define TINY 1e-3
 #define CREPT 50
 #define STORED 0.1
+/* A load that a mechanism carries and that grows from one doubled displacement to the next by ever more, but by no more
+ * than this, is past its knee: what yields gets no stiffer, and what is left is the change of shape. */
+#define CREEPS 0.05
 /* A load that still rises by these shares of what hardening explains is no limit. Below, a bar that is pulled is within
  * 0.54 % of its largest load, exp(-0.1) / 0.9, whatever it hardens by; above, more than half of the rise is of other
  * causes, of which the rule of a doubled displacement knows. */
@@ -104,13 +107,36 @@ static PetscReal size_of_rise(const LimitRun *s)
   return most;
 }
 
+/* The last row at which no more than this share of the last displacement lay behind; 0: there is none. */
+static PetscInt row_at(const LimitRun *s, PetscReal share)
+{
+  const PetscReal far = share * s->rows[s->n - 1].displacement;
+  PetscInt i = s->n - 1;
+  while (i > 0 && s->rows[i].displacement > far) --i;
+  return i;
+}
+
 /* By how much the load grew while the displacement doubled, over its rise; 1 as long as there is no half. */
 static PetscReal growth(const LimitRun *s)
 {
-  const PetscReal size = size_of_rise(s), half = 0.5 * s->rows[s->n - 1].displacement;
-  PetscInt i = s->n - 1;
-  while (i > 0 && s->rows[i].displacement > half) --i;
-  return i > 0 && size > 0 ? (largest_load(s) - s->rows[i].load) / size : 1;
+  const PetscReal size = size_of_rise(s);
+  const PetscInt half = row_at(s, 0.5);
+  return half > 0 && size > 0 ? (largest_load(s) - s->rows[half].load) / size : 1;
+}
+
+/* Between two rows next to nothing of the load's work was stored. */
+static PetscBool flows(const LimitRow *a, const LimitRow *b)
+{
+  const PetscReal work = b->work - a->work;
+  return (PetscBool)(work > 0 && PetscAbsReal(b->stored - a->stored) <= STORED * work);
+}
+
+/* Has the load passed its knee? The one of half the displacement is then what was to be found. */
+static PetscBool creeps_on(const LimitRun *s)
+{
+  const PetscInt half = row_at(s, 0.5), quarter = row_at(s, 0.25);
+  if (quarter < 1 || growth(s) > CREEPS || !flows(&s->rows[half], &s->rows[s->n - 1])) return PETSC_FALSE;
+  return (PetscBool)(s->rows[s->n - 1].load - s->rows[half].load >= s->rows[half].load - s->rows[quarter].load);
 }
 
 /* Where steps are tiny: what the load would grow by, over its rise, while the displacement doubles, if it went on as
@@ -119,9 +145,8 @@ static PetscReal creep(const LimitRun *s)
 {
   if (s->n <= CREPT) return 1;
   const LimitRow *b = &s->rows[s->n - 1], *a = b - CREPT;
-  const PetscReal way = b->displacement - a->displacement, work = b->work - a->work, size = size_of_rise(s);
-  if (b->control - a->control > CREPT * TINY * b->control || way <= 0 || work <= 0 || size <= 0) return 1;
-  if (PetscAbsReal(b->stored - a->stored) > STORED * work) return 1;
+  const PetscReal way = b->displacement - a->displacement, size = size_of_rise(s);
+  if (b->control - a->control > CREPT * TINY * b->control || way <= 0 || size <= 0 || !flows(a, b)) return 1;
   return (b->load - a->load) / way * b->displacement / size;
 }
 
@@ -136,13 +161,15 @@ static LimitOutcome ends(const LimitRun *s, const LimitSpec *spec)
   return size_of_rise(s) <= spec->tolerance * size_of_loads(s) ? LIMIT_HOLDS : LIMIT_MOST;
 }
 
-static LimitOutcome judge(const LimitRun *s, const LimitSpec *spec, PetscBool forces)
+static LimitOutcome judge(const LimitRun *s, const LimitSpec *spec, PetscBool forces, PetscBool hardens)
 {
   const LimitRow *last = &s->rows[s->n - 1];
   const PetscReal most = largest_load(s);
   if (growth(s) <= spec->tolerance && !rises_as_it_hardens(s)) return LIMIT_HOLDS;
   if (last->load < most - FALLEN * spec->tolerance * size_of_loads(s)) return LIMIT_FALLS;
   if (creep(s) <= spec->tolerance) return LIMIT_FLOWS;
+  if (!hardens && creeps_on(s)) return LIMIT_CREEPS;
+  if (s->n > spec->steps) return LIMIT_LONG;
   return (forces ? most : last->control * (1 + 1e-9)) >= spec->most ? ends(s, spec) : LIMIT_RISES;
 }
 
@@ -172,7 +199,7 @@ PetscErrorCode LimitStep(LimitRun *s, Model *m, RunDir *dir, StepReport *report)
   }
   PetscCall(Look(s, m, report));
   choose_step(s, spec, &m->control, report);
-  s->outcome = (PetscReal)judge(s, spec, forces);
+  s->outcome = (PetscReal)judge(s, spec, forces, raised_hardens(m));
   PetscCall(RunDirLog(dir, "load = %.6g displacement = %.4g m iterations = %d", (double)m->raised.load,
                       (double)m->raised.displacement, (int)report->newton.iterations));
   PetscFunctionReturn(0);
@@ -198,6 +225,35 @@ PetscErrorCode LimitWrite(const LimitRun *s, const Model *m, RunDir *dir)
   PetscFunctionReturn(status);
 }
 
+/* What a load that rose until the end would come to while the displacement doubles, if it went on as in the last steps:
+ * load curves of what yields are concave, so that the limit lies below. */
+static PetscReal load_ahead(const LimitRun *s)
+{
+  const LimitRow *b = &s->rows[s->n - 1], *a = &s->rows[PetscMax(0, s->n - 1 - CREPT)];
+  const PetscReal way = b->displacement - a->displacement;
+  return b->load + (way > 0 ? (b->load - a->load) / way * b->displacement : 0);
+}
+
+/* What lies beyond a load that has not come to rest. */
+static PetscErrorCode TellBeyond(const LimitRun *s, RunDir *dir)
+{
+  const LimitOutcome outcome = (LimitOutcome)s->outcome;
+
+  PetscFunctionBeginUser;
+  if (outcome == LIMIT_CREEPS)
+    PetscCall(RunDirLog(
+      dir,
+      "by creep = a mechanism flows, and what the load still gains, more in each doubling, is of the change of "
+      "shape (less with a larger `young`), or of cells that lock where it dilates: the limit is the "
+      "load at half the displacement, for %.6g at its end",
+      (double)s->rows[s->n - 1].load));
+  if (outcome == LIMIT_LONG)
+    PetscCall(RunDirLog(dir,
+                        "by bracket = between %.6g and %.6g, which it would come to if it went on as in the last steps",
+                        (double)largest_load(s), (double)load_ahead(s)));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode TellLoad(const LimitRun *s, RunDir *dir)
 {
   static const char *const why[LIMIT_N] = {
@@ -206,17 +262,21 @@ static PetscErrorCode TellLoad(const LimitRun *s, RunDir *dir)
     [LIMIT_FALLS] = "it falls",
     [LIMIT_MOST] = "it still rises where the search was to end (analysis.limit.most)",
     [LIMIT_LOST] = "Newton's method lost its way",
+    [LIMIT_CREEPS] = "it creeps on",
+    [LIMIT_LONG] = "it still rises after as many steps as the search may take (analysis.limit.steps)",
   };
+  const LimitOutcome outcome = (LimitOutcome)s->outcome;
 
   PetscFunctionBeginUser;
-  if ((LimitOutcome)s->outcome == LIMIT_FLOWS)
+  if (outcome == LIMIT_FLOWS)
     PetscCall(RunDirLog(dir,
                         "by load = it holds: as in the last %d steps, which are tiny, it would grow by %.2g %% while "
                         "the displacement doubles",
                         CREPT, 100 * (double)creep(s)));
   else
-    PetscCall(RunDirLog(dir, "by load = %s: it grew by %.2g %% while the displacement doubled",
-                        why[(LimitOutcome)s->outcome], 100 * (double)growth(s)));
+    PetscCall(RunDirLog(dir, "by load = %s: it grew by %.2g %% while the displacement doubled", why[outcome],
+                        100 * (double)growth(s)));
+  PetscCall(TellBeyond(s, dir));
   if (s->rises > HARDENS)
     PetscCall(RunDirLog(dir,
                         "by hardening = its last rise was %.2g times what materials hardened by: with that it may go "
@@ -249,20 +309,31 @@ static PetscErrorCode DoubtFall(const LimitRun *s, Model *m, RunDir *dir, PetscB
   PetscFunctionReturn(0);
 }
 
+/* What the search says the load is. */
+static PetscReal load_told(const LimitRun *s)
+{
+  return (LimitOutcome)s->outcome == LIMIT_CREEPS ? s->rows[row_at(s, 0.5)].load : largest_load(s);
+}
+
+static PetscBool has_ended(LimitOutcome outcome)
+{
+  return (PetscBool)(outcome == LIMIT_HOLDS || outcome == LIMIT_FALLS || outcome == LIMIT_FLOWS ||
+                     outcome == LIMIT_CREEPS);
+}
+
 PetscErrorCode LimitEnd(const LimitRun *s, Model *m, RunDir *dir)
 {
   const LimitSpec *spec = &m->c->analysis.limit;
-  const LimitOutcome outcome = (LimitOutcome)s->outcome;
+  const PetscReal load = load_told(s);
   PetscBool doubted;
 
   PetscFunctionBeginUser;
   PetscCall(TellLoad(s, dir));
   PetscCall(DoubtFall(s, m, dir, &doubted));
-  const PetscBool ended = (PetscBool)(outcome == LIMIT_HOLDS || outcome == LIMIT_FALLS || outcome == LIMIT_FLOWS);
-  const PetscBool found = (PetscBool)(ended && !doubted);
+  const PetscBool found = (PetscBool)(has_ended((LimitOutcome)s->outcome) && !doubted);
   const char *what = found ? "limit load" : "largest load that was reached";
   m->raised.unfound = !found;
-  m->raised.value = found || largest_load(s) != 0 ? largest_load(s) : NAN;
+  m->raised.value = found || load != 0 ? load : NAN;
   PetscCall(StrengthTellUneven(m, dir));
   PetscCall(RunDirLog(dir, "by energy = %.1f %% of the load's last work was stored", 100 * (double)share_stored(s)));
   if (!found && !PetscIsNanReal(m->raised.value))
@@ -273,8 +344,8 @@ PetscErrorCode LimitEnd(const LimitRun *s, Model *m, RunDir *dir)
                         "lost its way at once (analysis.limit.step)",
                         (double)spec->step));
   if (case_raises_displacement(m->c))
-    PetscCall(RunDirLog(dir, "%s = %.6g N along the displacement of '%s'", what, (double)largest_load(s), spec->raise));
-  else PetscCall(RunDirLog(dir, "%s = %.6g times '%s'", what, (double)largest_load(s), spec->raise));
+    PetscCall(RunDirLog(dir, "%s = %.6g N along the displacement of '%s'", what, (double)load, spec->raise));
+  else PetscCall(RunDirLog(dir, "%s = %.6g times '%s'", what, (double)load, spec->raise));
   PetscFunctionReturn(0);
 }
 

@@ -18,7 +18,17 @@ typedef struct {
 #define LIMIT_NUMBERS 8
 
 /* Why nothing more is tried. */
-typedef enum { LIMIT_RISES, LIMIT_HOLDS, LIMIT_FALLS, LIMIT_MOST, LIMIT_LOST, LIMIT_FLOWS, LIMIT_N } LimitOutcome;
+typedef enum {
+  LIMIT_RISES,
+  LIMIT_HOLDS,
+  LIMIT_FALLS,
+  LIMIT_MOST,
+  LIMIT_LOST,
+  LIMIT_FLOWS,
+  LIMIT_CREEPS,
+  LIMIT_LONG,
+  LIMIT_N
+} LimitOutcome;
 
 typedef struct {
   PetscReal step;    /* the next */

@@ -95,6 +95,8 @@ static const SchemaEntry limit_entries[] = {
       AT(LimitSpec, tolerance)),
   KEY("most", NUMBER, NULL, "factor of the load, or of the displacement, beyond which nobody looks",
       .note = "1 of a displacement, 1000 of a load", ABOVE(0), AT(LimitSpec, most)),
+  KEY("steps", INTEGER, NULL, "the search ends after so many of them, found or not", .fallback = "1000", AT_LEAST(1),
+      AT(LimitSpec, steps)),
   {.key = NULL},
 };
 static const SchemaTable limit = {
