@@ -167,18 +167,50 @@ static void resolve_release(Case *c, const StageSpec *stage)
   else c->release = c->initial.has_release ? c->initial.release : usual;
 }
 
-/* Which of the loads, or of the boundary, bears the name? */
-static void find_raised(Case *c)
+/* Where something that may be raised stands in the case. */
+static const char *raised_path(const Case *c, RaiseKind kind, PetscInt index, char path[64])
+{
+  switch (kind) {
+  case RAISE_GRAVITY: snprintf(path, 64, "loads.gravity"); break;
+  case RAISE_LOAD: return case_load_path(c, index, path);
+  case RAISE_BOUNDARY: snprintf(path, 64, "boundary[%d]", (int)index); break;
+  case RAISE_WALL: snprintf(path, 64, "walls[%d]", (int)index); break;
+  case RAISE_NOTHING: path[0] = 0; break;
+  }
+  return path;
+}
+
+/* Are two of what may be raised entries of one list, which may not have a name twice anyway? */
+static PetscBool same_list(const Case *c, RaiseKind a, PetscInt i, RaiseKind b, PetscInt k)
+{
+  return (PetscBool)(a == b && (a != RAISE_LOAD || c->loads[i].kind == c->loads[k].kind));
+}
+
+/* Who bears the name that is raised is meant, unless another one may be. */
+static void ask_name(Case *c, RaiseKind kind, PetscInt index, const char *name, Diag *diag)
 {
   LimitSpec *limit = &c->analysis.limit;
-  if (!strcmp(limit->raise, "gravity")) limit->kind = RAISE_GRAVITY;
-  for (PetscInt k = 0; k < c->n_loads && !limit->kind; ++k)
-    if (c->loads[k].name && !strcmp(c->loads[k].name, limit->raise)) limit->kind = RAISE_LOAD, limit->index = k;
-  for (PetscInt k = 0; k < c->n_boundary && !limit->kind; ++k)
-    if (c->boundary[k].name && !strcmp(c->boundary[k].name, limit->raise))
-      limit->kind = RAISE_BOUNDARY, limit->index = k;
-  for (PetscInt k = 0; k < c->n_walls && !limit->kind; ++k)
-    if (!strcmp(c->walls[k].name, limit->raise)) limit->kind = RAISE_WALL, limit->index = k;
+  char first[64], second[64], path[80];
+  if (!name || strcmp(name, limit->raise)) return;
+  if (limit->kind && same_list(c, limit->kind, limit->index, kind, index)) return;
+  if (limit->kind) {
+    snprintf(path, sizeof path, "%s.name", raised_path(c, kind, index, second));
+    diag_error(diag, path, "the name '%s' is taken by %s, and analysis.limit.raise says it: which of them is raised?",
+               name, raised_path(c, limit->kind, limit->index, first));
+    diag_hint(diag, "let one of them have a name of its own");
+    return;
+  }
+  limit->kind = kind;
+  limit->index = index;
+}
+
+/* Which of the loads, of the boundary or of the walls bears the name? */
+static void find_raised(Case *c, Diag *diag)
+{
+  ask_name(c, RAISE_GRAVITY, 0, "gravity", diag);
+  for (PetscInt k = 0; k < c->n_loads; ++k) ask_name(c, RAISE_LOAD, k, c->loads[k].name, diag);
+  for (PetscInt k = 0; k < c->n_boundary; ++k) ask_name(c, RAISE_BOUNDARY, k, c->boundary[k].name, diag);
+  for (PetscInt k = 0; k < c->n_walls; ++k) ask_name(c, RAISE_WALL, k, c->walls[k].name, diag);
 }
 
 /* A displacement that is raised must be one, alone. */
@@ -204,7 +236,7 @@ static PetscErrorCode ResolveRaised(const YamlNode *given, Diag *diag, Case *c)
 
   PetscFunctionBeginUser;
   if (c->analysis.type != ANALYSIS_LIMIT || !limit->raise) PetscFunctionReturn(0);
-  find_raised(c);
+  find_raised(c, diag);
   if (!yaml_find(given, "most")) limit->most = case_raises_displacement(c) ? 1 : 1000;
   check_raised(c, diag);
   if (limit->kind) PetscFunctionReturn(0);

@@ -208,6 +208,18 @@ expect "no tension" 0 "$talus" run cracks.yaml --out cracks --force
 lacks out.txt "halved"
 awk -F, 'END { exit !($2 > 0.07 && $2 < 0.08) }' cracks/limit.csv || fail "$name: $(tail -n 1 cracks/limit.csv)"
 
+# A name that two have which may be raised
+twice() {
+  expect "$1" 2 "$talus" check two.yaml
+  says err.txt "$2"
+}
+sed 's/^loads: {/&tractions: [{name: footing, on: {body: ground, y: 0, x: [1, 2]}, value: [0, -1]}], /' circle.yaml >two.yaml
+twice "two loads of a name" "two.yaml:8:111: error: the name 'footing' is taken by loads.tractions[0], and analysis.limit.raise says it"
+sed "s/^boundary: \[/&{name: footing, on: {y: 0, x: [1, 2]}, displacement: {y: -1e-3}}, /" circle.yaml >two.yaml
+twice "a load and a boundary of a name" "two.yaml:7:19: error: the name 'footing' is taken by loads.pressures[0]"
+sed "s/raise: footing/raise: gravity/; s/name: footing/name: gravity/" circle.yaml >two.yaml
+twice "a load that is called gravity" "the name 'gravity' is taken by loads.gravity, and analysis.limit.raise says it"
+
 # A thick sphere of the same soil: all of its stresses stand on edges; 4 c ln(b / a) = 4.3944 and 5 % more on these cells. Where Newton's method
 # may take few iterations steps become tiny at the limit
 cat >sphere.geo <<'END'
