@@ -220,6 +220,11 @@ twice "a load and a boundary of a name" "two.yaml:7:19: error: the name 'footing
 sed "s/raise: footing/raise: gravity/; s/name: footing/name: gravity/" circle.yaml >two.yaml
 twice "a load that is called gravity" "the name 'gravity' is taken by loads.gravity, and analysis.limit.raise says it"
 
+# Statics of a cut that nothing holds any more come to rest on its own foot
+sed 's/^analysis:.*/analysis: {type: static, step: 0.1}/; s/, tension_cutoff: 0//; s/^loads:.*/loads: {gravity: [0, -46]}/; s/size: 0.125/size: 0.25/; s/^method.*/&\nformulation: mean-dilatation/' cracks.yaml >fallen.yaml
+expect "what has failed in statics" 0 "$talus" run fallen.yaml --out fallen --force --quiet
+says err.txt "times what is stored: something has failed on the way"
+
 # A thick sphere of the same soil: all of its stresses stand on edges; 4 c ln(b / a) = 4.3944 and 5 % more on these cells. Where Newton's method
 # may take few iterations steps become tiny at the limit
 cat >sphere.geo <<'END'
