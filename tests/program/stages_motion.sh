@@ -75,6 +75,9 @@ done
 expect "and is reset" 0 "$talus" run falls.yaml --out falls --force --quiet --set 'stages[1]={name: reset, reset: [velocity], analysis: {type: dynamic, end: 0.001, step: 1e-3}}' --set 'loads={gravity: [0, 0]}'
 awk -F, '$3 == 2 { exit !($4 * $4 < 0.0025) }' falls/history.csv || fail "$name: $(grep ',2,' falls/history.csv)"
 
+expect "and has no velocity in a static stage that comes first" 0 "$talus" run falls.yaml --out falls --force --quiet --set 'stages[0]={name: stands, analysis: {type: static, steps: 2}}'
+awk -F, 'NR > 1 && ($4 * $4 > 1e-12 || $5 < -10001 && $3 == 3) { bad = 1 } END { exit bad || $3 != 3 }' falls/history.csv || fail "$name: $(cat falls/history.csv)"
+
 # Walls with mass that a stage gives anew. One that was not there begins as the stage says; one that was there stays where
 # it is and goes on, but for what is said in other numbers; a reset stops it; drawn elsewhere it begins there; and energy
 # is accounted for, whatever its mass is now. Of a wall of 10 kg that flies with 1 m/s and 1 rad/s.

@@ -335,10 +335,14 @@ static void put(RigidWall *b)
   for (int d = 0; d < 3; ++d) b->now.R[4 * d] = 1;
 }
 
+/* In statics nothing has a velocity, which dynamics would go on with. */
 void rigid_start(RigidWall *b, const Case *c)
 {
+  const WallMassSpec *mass = &c->walls[b->wall].mass;
+  const PetscReal none[3] = {0};
+  const PetscBool still = case_is_static(&c->analysis);
   put(b);
-  rigid_move(b, c->walls[b->wall].mass.velocity, c->walls[b->wall].mass.spin);
+  rigid_move(b, still ? none : mass->velocity, still ? none : mass->spin);
 }
 
 void rigid_redraw(RigidWall *b, const RigidWall *was)
