@@ -241,19 +241,31 @@ static PetscReal counts_of(const Contact *s, const ContactPoint *c, const PetscR
 }
 
 /* How far its body, or its wall, takes a contact point in the step, m. In dynamics what rests with a gap would be
- * shaken, and what flies has its force of its inertia: there walls count that are moved, and what is bonded, if the
- * scheme is the midpoint rule's. Newmark's remembers what small gaps take, and shook a block that rests on a bonded
- * body. */
+ * shaken, and what flies has its force of its inertia: there walls count that are moved, and what is bonded. */
 static PetscReal travel_of(const Contact *s, const ContactPoint *c, const NodalScene *scene)
 {
   const PetscBool driven = c->wall < s->n_walls && !contact_rigid(s, c);
   PetscReal own[3] = {0};
   if (c->state == CONTACT_OPEN) return 0;
-  if (s->share.moves && (c->law.kind != CONTACT_BONDED || s->share.inertia))
-    return driven ? counts_of(s, c, c->swept) : 0;
+  if (s->share.moves && c->law.kind != CONTACT_BONDED) return driven ? counts_of(s, c, c->swept) : 0;
   for (PetscInt e = c->first; e < c->first + c->own; ++e)
     for (PetscInt d = 0; d < s->dim; ++d) own[d] += scene->whole * s->N[e] * scene->du[s->node[e] * s->dim + d];
   return PetscMax(counts_of(s, c, own), counts_of(s, c, c->swept));
+}
+
+/* Newmark's rule remembers what small gaps take, and shakes what rests on a bonded body, which may slide. What is bonded
+ * alone swings for ever, and such gaps would add to its energy in each step, or take of it. */
+static PetscBool is_remembered(const Contact *s, const ContactPoint *c)
+{
+  return (PetscBool)(s->share.moves && s->share.inertia && c->law.kind == CONTACT_BONDED);
+}
+
+/* The most that anything moves by in the step, m, on this rank. */
+static PetscReal swing_of(const Contact *s, const NodalScene *scene)
+{
+  PetscReal most = 0;
+  for (PetscInt i = 0; i < scene->grid->n_owned * s->dim; ++i) most = PetscMax(most, PetscAbsReal(scene->du[i]));
+  return scene->whole * most;
 }
 
 /* Each change leaves a fifth of a gap, or so. */
@@ -269,20 +281,6 @@ static PetscReal closed_by(const Contact *s, PetscInt change, PetscReal pressed)
   const PetscReal most = CLOSED * s->length;
   if (!s->begins || !s->share.moves || s->share.yields || change >= tries(s)) return most;
   return PetscMin(most, MOVING * pressed);
-}
-
-/* What may stay of gaps, or of slips, which `times` as much may; moved: against the wall, and at all; pressed: the gap
- * that the largest pressure takes away. */
-static PetscReal allowed(const Contact *s, PetscInt change, PetscReal moved, PetscReal travelled, PetscReal pressed,
-                         PetscReal times)
-{
-  const PetscReal closed = closed_by(s, change, pressed), asked = s->share.asked;
-  const PetscReal still = PetscMax(ROUND_OFF * s->length, PetscMin(STANDING * s->length, MOVING * pressed));
-  PetscReal most = closed;
-  if (s->share.flows) most = PetscMax(closed, times * PetscMin(MOVED * moved, FLOWING * s->length));
-  else if (!s->share.yields && change < tries(s) && !(s->share.moves && travelled == 0))
-    most = PetscMin(closed, MOVING * travelled);
-  return PetscMax(still, asked * most);
 }
 
 /* What counts against ALLOWED where gaps stall. */
@@ -303,36 +301,80 @@ static PetscErrorCode LendAgain(Contact *s, const Grid *grid, PetscBool *again)
   PetscFunctionReturn(0);
 }
 
-/* Multipliers become the forces that there are, and the balance is sought again, unless gaps and
- * slips of what is in contact have all but vanished. */
-PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt change, PetscBool *again)
+/* The largest of all points and ranks: */
+enum {
+  OF_GAPS,        /* and of slips of what does not rub, m */
+  OF_SOFT,        /* gaps and slips of what may be stiffened, m */
+  OF_MOTIONS,     /* motion_of, m */
+  OF_STALLED,     /* stalled_of, m */
+  OF_SLIPS,       /* of what rubs, m */
+  OF_TRAVELS,     /* travel_of, m, */
+  OF_REMEMBERED,  /* and that of what is_remembered */
+  OF_PRESSED,     /* what pressures take away, m */
+  OF_SWING,       /* swing_of, m */
+  WAS_IN_CONTACT, /* was any before the step? */
+  RUBS_NOW,       /* does any rub, */
+  SLIDES_NOW,     /* and slide? */
+  OF_ALL
+};
+
+static PetscErrorCode LookAt(const Contact *s, const NodalScene *scene, PetscInt change, PetscReal most[OF_ALL])
 {
-  Contact *s = data;
-  /* of gaps, and of slips of what does not rub; of what may be stiffened; motion; stalled_of; slips of what rubs;
-   * travel_of; what pressures take away; was any in contact? */
-  PetscReal worst[8] = {0}, of_all[8];
+  PetscReal w[OF_ALL] = {0};
 
   PetscFunctionBeginUser;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     const PetscReal left = left_of(c);
     const PetscBool rubs = c->law.kind == CONTACT_FRICTION;
-    worst[0] = PetscMax(worst[0], rubs ? gap_of(c) : left);
-    worst[4] = PetscMax(worst[4], rubs ? slip_of(c) : 0);
-    if (is_soft(c, left)) worst[1] = PetscMax(worst[1], left);
-    worst[2] = PetscMax(worst[2], motion_of(c));
-    worst[3] = PetscMax(worst[3], stalled_of(c, change, left));
-    worst[5] = PetscMax(worst[5], travel_of(s, c, scene));
-    worst[6] = PetscMax(worst[6], PetscAbsReal(c->now.pressure) / c->law.penalty);
-    worst[7] = PetscMax(worst[7], c->before != CONTACT_OPEN);
+    const int travels = is_remembered(s, c) ? OF_REMEMBERED : OF_TRAVELS;
+    w[OF_GAPS] = PetscMax(w[OF_GAPS], rubs ? gap_of(c) : left);
+    w[OF_SLIPS] = PetscMax(w[OF_SLIPS], rubs ? slip_of(c) : 0);
+    if (is_soft(c, left)) w[OF_SOFT] = PetscMax(w[OF_SOFT], left);
+    w[OF_MOTIONS] = PetscMax(w[OF_MOTIONS], motion_of(c));
+    w[OF_STALLED] = PetscMax(w[OF_STALLED], stalled_of(c, change, left));
+    w[travels] = PetscMax(w[travels], travel_of(s, c, scene));
+    w[OF_PRESSED] = PetscMax(w[OF_PRESSED], PetscAbsReal(c->now.pressure) / c->law.penalty);
+    w[WAS_IN_CONTACT] = PetscMax(w[WAS_IN_CONTACT], c->before != CONTACT_OPEN);
+    w[RUBS_NOW] = PetscMax(w[RUBS_NOW], rubs && c->state != CONTACT_OPEN);
+    w[SLIDES_NOW] = PetscMax(w[SLIDES_NOW], rubs && c->state == CONTACT_SLIDES);
   }
-  PetscCall(MPIU_Allreduce(worst, of_all, 8, MPIU_REAL, MPIU_MAX, scene->grid->comm));
-  s->begins = of_all[7] == 0;
-  const PetscReal all = PetscMax(of_all[0], of_all[4]);
-  const PetscReal closed = s->begins ? s->share.asked * closed_by(s, change, of_all[6]) : CLOSED * s->length;
-  const PetscBool slow = change > 0 && all > STALLS * s->worst, soft = of_all[1] > closed;
-  const PetscBool stalls = slow && !soft && of_all[3] <= ALLOWED * s->length;
-  const PetscBool stay = of_all[0] <= allowed(s, change, of_all[2], of_all[5], of_all[6], 1) &&
-                         of_all[4] <= allowed(s, change, of_all[2], of_all[5], of_all[6], SLIPS);
+  w[OF_SWING] = swing_of(s, scene);
+  PetscCall(MPIU_Allreduce(w, most, OF_ALL, MPIU_REAL, MPIU_MAX, scene->grid->comm));
+  PetscFunctionReturn(0);
+}
+
+/* What may stay of gaps, or of slips, which `times` as much may. A gap that is taken away while the pressure is high, and
+ * let be while it is low, gives energy to what swings on a wall: where nothing slides it is a share of what swings. */
+static PetscReal allowed(const Contact *s, PetscInt change, const PetscReal most[OF_ALL], PetscReal times)
+{
+  const PetscReal closed = closed_by(s, change, most[OF_PRESSED]), asked = s->share.asked;
+  const PetscReal still = PetscMax(ROUND_OFF * s->length, PetscMin(STANDING * s->length, MOVING * most[OF_PRESSED]));
+  const PetscReal travelled = PetscMax(most[OF_TRAVELS], most[RUBS_NOW] > 0 ? 0 : most[OF_REMEMBERED]);
+  const PetscReal swing = most[SLIDES_NOW] > 0 ? 0 : most[OF_SWING];
+  const PetscBool sought = (PetscBool)(!s->share.yields && change < tries(s));
+  PetscReal stays = closed;
+  if (s->share.flows) stays = PetscMax(closed, times * PetscMin(MOVED * most[OF_MOTIONS], FLOWING * s->length));
+  else if (sought && !(s->share.moves && travelled == 0)) stays = PetscMin(closed, MOVING * travelled);
+  else if (sought && swing > 0) stays = PetscMin(closed, MOVING * PetscMax(CLOSED * s->length, swing));
+  return PetscMax(still, asked * stays);
+}
+
+/* Multipliers become the forces that there are, and the balance is sought again, unless gaps and
+ * slips of what is in contact have all but vanished. */
+PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt change, PetscBool *again)
+{
+  Contact *s = data;
+  PetscReal most[OF_ALL];
+
+  PetscFunctionBeginUser;
+  PetscCall(LookAt(s, scene, change, most));
+  s->begins = most[WAS_IN_CONTACT] == 0;
+  const PetscReal all = PetscMax(most[OF_GAPS], most[OF_SLIPS]);
+  const PetscReal closed = s->begins ? s->share.asked * closed_by(s, change, most[OF_PRESSED]) : CLOSED * s->length;
+  const PetscBool slow = change > 0 && all > STALLS * s->worst, soft = most[OF_SOFT] > closed;
+  const PetscBool stalls = slow && !soft && most[OF_STALLED] <= ALLOWED * s->length;
+  const PetscBool stay =
+    most[OF_GAPS] <= allowed(s, change, most, 1) && most[OF_SLIPS] <= allowed(s, change, most, SLIPS);
   *again = !stay && change < MOST_CHANGES && !stalls;
   s->worst = all;
   if (s->adheres && change < TRIES) PetscCall(LendAgain(s, scene->grid, again));
