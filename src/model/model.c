@@ -417,6 +417,7 @@ PetscErrorCode ModelDestroy(Model **model)
   if (m->grid) PetscCall(GridDestroy(&m->grid));
   PetscCall(PetscFree(m->drawn));
   PetscCall(PetscFree(m->balanced));
+  PetscCall(PetscFree(m->remainder));
   PetscCall(PetscFree(m->weighs));
   PetscCall(PetscFree(m->pull));
   PetscCall(PetscFree(m->let_go));

@@ -1,5 +1,6 @@
 /* Loads that the material carries, in stages that change some of them and drop others: the foot bears what is there at
- * the end. What no stage can bring is refused beforehand. */
+ * the end. What no stage can bring is refused beforehand. Of what is out of balance as a stage begins, what points that
+ * moved have left is none that it releases. */
 #include "case_builder.h"
 #include "model/stage/stage.h"
 
@@ -33,19 +34,25 @@ static LoadSpec point(PetscReal y, PetscReal force)
   return (LoadSpec){.kind = LOAD_POINT, .at = {0.4, y}, .value = {0, force}};
 }
 
-static Model *both_stages(Bench *first, Bench *then)
+static Model *succeed(Model *m, const Bench *then)
 {
-  Model *m = bench_model(first, PETSC_COMM_WORLD);
   Imbalance imbalance;
   PetscInt errors;
   Diag *diag;
-  model_step(m, 1);
   CALL(DiagCreate(&diag));
   CALL(ModelSucceed(&then->c, diag, &m, &imbalance));
   CALL(DiagReduce(PETSC_COMM_WORLD, diag, &errors));
   CALL(DiagFlush(diag, stderr));
   CALL(DiagDestroy(&diag));
   CHECK(m, "the stage was refused");
+  return m;
+}
+
+static Model *both_stages(Bench *first, Bench *then)
+{
+  Model *m = bench_model(first, PETSC_COMM_WORLD);
+  model_step(m, 1);
+  m = succeed(m, then);
   model_step(m, then->c.analysis.end - m->time);
   return m;
 }
@@ -148,8 +155,6 @@ static void test_fades(void **state)
   (void)state;
   EACH_OF (k, kinds) {
     Bench first, then;
-    Imbalance imbalance;
-    Diag *diag;
     block(&first, kinds[k]);
     bench_traction(&first, 1, 1, "body", 300, -1000, 0);
     first.c.gravity[1] = -1;
@@ -161,11 +166,7 @@ static void test_fades(void **state)
     then.c.analysis.step = then.c.analysis.largest = 0.25;
     Model *m = bench_model(&first, PETSC_COMM_WORLD);
     model_step(m, 1);
-    CALL(DiagCreate(&diag));
-    CALL(ModelSucceed(&then.c, diag, &m, &imbalance));
-    CALL(DiagFlush(diag, stderr));
-    CALL(DiagDestroy(&diag));
-    CHECK(m, "the stage was refused");
+    m = succeed(m, &then);
     for (int step = 1; step <= 4; ++step) {
       model_step(m, 0.25);
       CHECK_CLOSE(foot(m, 0), -300, 1e-3);
@@ -175,9 +176,82 @@ static void test_fades(void **state)
   }
 }
 
+/* Room to go where the load presses it, on a grid that is restored or a cloud. */
+static void soft_block(Bench *b, int kind)
+{
+  static const PetscReal min[] = {-0.5, 0, 0}, max[] = {1.5, 1.25, 0};
+  static PetscReal rise[] = {0, 1};
+  block(b, kind == 2 ? "gmm" : "mpm");
+  bench_grid(b, min, max, 0.25);
+  if (kind < 2) b->c.basis = (BasisSpec){.kind = kind ? "gimp" : "cell"};
+  b->c.analysis.step = b->c.analysis.largest = 0.25;
+  b->c.release = 1;
+  bench_traction(b, 1, 1, "body", 5e3, -3e4, 0)->amplitude = (Amplitude){.n = 2, .time = rise, .value = rise};
+}
+
+/* A stage that changes nothing is no other run than one that goes on, and points that moved are out of balance in both:
+ * nothing is held, and what that takes is of the transfer. */
+static void test_unchanged(void **state)
+{
+  (void)state;
+  EACH_VARIANT (kind, 3) {
+    Bench one, then;
+    PetscReal energy[2][2];
+    for (int staged = 0; staged < 2; ++staged) {
+      soft_block(&one, (int)kind);
+      soft_block(&then, (int)kind);
+      one.c.analysis.end = staged ? 0.5 : 1;
+      then.c.stage = 1;
+      then.c.start = 0.5;
+      Model *m = bench_model(&one, PETSC_COMM_WORLD);
+      for (int k = 0; k < 2; ++k) model_step(m, 0.25);
+      if (staged) m = succeed(m, &then);
+      for (int k = 0; k < 2; ++k) model_step(m, 0.25);
+      energy[staged][0] = m->external_work;
+      energy[staged][1] = m->transfer_energy;
+      CALL(ModelDestroy(&m));
+    }
+    CHECK(PetscAbsReal(energy[0][1]) > 1e-7 * energy[0][0], "nothing was out of balance");
+    for (int k = 0; k < 2; ++k) CHECK_CLOSE(energy[1][k], energy[0][k], 1e-11 * energy[0][0]);
+  }
+}
+
+/* The upper half goes, and what points have left out of balance is held with what it bore: the foot bears the weight of
+ * the rest, and what there still is of the other. */
+static void test_goes(void **state)
+{
+  (void)state;
+  EACH_VARIANT (kind, 2) {
+    Bench one, then;
+    Bench *both[] = {&one, &then};
+    for (int k = 0; k < 2; ++k) {
+      soft_block(both[k], (int)kind);
+      both[k]->c.n_loads = 0;
+      both[k]->c.gravity[1] = -200;
+      both[k]->c.n_bodies = 2;
+      both[k]->body[1] = both[k]->body[0];
+      both[k]->body[1].name = "upper";
+      both[k]->body[0].shape.max[1] = both[k]->body[1].shape.min[1] = 0.5;
+    }
+    then.body[1].absent = PETSC_TRUE;
+    then.c.stage = 1;
+    then.c.start = 1;
+    then.c.analysis.end = 2;
+    Model *m = bench_model(&one, PETSC_COMM_WORLD);
+    for (int k = 0; k < 4; ++k) model_step(m, 0.25);
+    m = succeed(m, &then);
+    for (int k = 1; k <= 4; ++k) {
+      model_step(m, 0.25);
+      CHECK_CLOSE(foot(m, 1), 200 * 1000 * (0.5 + 0.5 * (1 - 0.25 * k)), 1e-5);
+    }
+    CALL(ModelDestroy(&m));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_tractions), cmocka_unit_test(test_pressures),
-                                     cmocka_unit_test(test_refused), cmocka_unit_test(test_fades)};
+                                     cmocka_unit_test(test_refused),   cmocka_unit_test(test_fades),
+                                     cmocka_unit_test(test_unchanged), cmocka_unit_test(test_goes)};
   return run_model_tests(argc, argv, tests);
 }

@@ -2,13 +2,11 @@
 #include "model/stage/stage_private.h"
 #include "solve/forces/release.h"
 
-/* Residual of the state as it is, in the frames of the boundary, zero where nodes are held: what is missing to
- * balance, N. */
-static PetscErrorCode Residual(Model *m, PetscReal *residual)
+PetscErrorCode Residual(Model *m, PetscReal *residual)
 {
   NodalFields *n = m->nodes;
   const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
-  PetscReal g[3];
+  PetscReal *g = m->gravity;
 
   PetscFunctionBeginUser;
   gravity_at(m->c, m->time, g);
@@ -53,8 +51,7 @@ static PetscErrorCode Report(const Model *m, const PetscReal *residual, Imbalanc
   PetscFunctionReturn(0);
 }
 
-/* Those of dofs that are held, at nodes that material reaches. */
-static void keep_held(const Model *m, PetscReal *values)
+void keep_held(const Model *m, PetscReal *values)
 {
   frames_turn(&m->boundary->frames, m->dim, values);
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
@@ -85,16 +82,25 @@ static PetscErrorCode HoldReactions(const Model *m, const Case *from, const Pets
   PetscFunctionReturn(0);
 }
 
+/* What is missing to balance, but for what the next step takes in anyway. */
+static PetscErrorCode Lack(Model *m, PetscReal *residual)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Residual(m, residual));
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim && m->remainder; ++i) residual[i] -= m->remainder[i];
+  PetscFunctionReturn(0);
+}
+
 /* Once contact has taken over what it can of it. */
 static PetscErrorCode Remains(Model *m, const Case *from, PetscReal *residual)
 {
   PetscBool taken;
 
   PetscFunctionBeginUser;
-  PetscCall(Residual(m, residual));
+  PetscCall(Lack(m, residual));
   PetscCall(ContactTakesOver(m, from, residual, &taken));
   if (!taken) PetscFunctionReturn(0);
-  PetscCall(Residual(m, residual));
+  PetscCall(Lack(m, residual));
   PetscCall(ContactBegin(m, PETSC_TRUE));
   PetscFunctionReturn(0);
 }

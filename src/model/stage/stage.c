@@ -282,7 +282,9 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, const Model
   if (next) PetscCall(BeginMeasures(m, from));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
+  PetscCall(RemainderTo(m, from, tables, &imbalance->moved));
   PetscCall(HoldImbalance(m, from, imbalance));
+  PetscCall(RemainderForget(m));
   if (!next) PetscCall(EnergyStart(m)); /* what was dissipated is the other run's */
   if (!next) PetscCall(ContactTell(m));
   PetscCall(BeginAcceleration(m, from, tables));
@@ -295,12 +297,13 @@ PetscErrorCode ModelSucceed(const Case *stage, Diag *diag, Model **model, Imbala
   Tables *tables;
   Diag *unheard;
   PetscInt errors;
-  const PetscBool goes_on = accelerations_go_on(stage, before->c);
+  const PetscBool jumps = accelerations_go_on(stage, before->c), rests = remainder_goes_on(stage, before->c);
 
   PetscFunctionBeginUser;
   before->time = case_time(before->c, before->time); /* a search over, clocks go on from where they stood */
   PetscCall(TablesCreate(&tables));
-  if (goes_on) PetscCall(JumpFrom(before, tables));
+  if (jumps) PetscCall(JumpFrom(before, tables));
+  if (rests) PetscCall(RemainderFrom(before, tables));
   PetscCall(ModelToTables(before, tables));
   PetscCall(OptionsForget(before)); /* the next model has the same */
   PetscCall(DiagCreate(&unheard));  /* all has been said when the run began */
@@ -309,7 +312,8 @@ PetscErrorCode ModelSucceed(const Case *stage, Diag *diag, Model **model, Imbala
   if (!m) diag_error(diag, NULL, "its model cannot be made");
   if (m && before->body_force) PetscCall(ModelSetBodyForce(m, before->body_force, before->body_force_context));
   if (m) strength_go_on(m, before, diag);
-  if (m && goes_on) PetscCall(JumpExpect(m));
+  if (m && jumps) PetscCall(JumpExpect(m));
+  if (m && rests) PetscCall(RemainderExpect(m));
   if (m) raised_go_on(m, before);
   if (m) PetscCall(ModelTake(m, tables, before->c, before, diag, imbalance));
   PetscCall(TablesDestroy(&tables));

@@ -12,6 +12,8 @@
 typedef struct {
   PetscReal all, most; /* the sum of the forces of nodes, and the largest, N */
   PetscReal where[3];  /* of the largest, m */
+  /* sum of those that points which moved have left, where a body goes and they are held with the rest, N */
+  PetscReal moved;
 } Imbalance;
 
 /* Which measures, walls and interfaces cannot come or go; next: with a stage, else with the state of another run. */

@@ -70,8 +70,23 @@ PetscErrorCode JumpTo(Model *model, const Tables *tables, char reason[256]);
 PetscErrorCode BodiesBringMotion(Model *model, const Case *from);
 /* Of values of all nodes, those of this rank's nodes that no boundary holds; the others become 0. */
 void keep_free(const Model *model, PetscReal *values);
+/* Of values of this rank's nodes, those that a boundary holds where material reaches; the others become 0. */
+void keep_held(const Model *model, PetscReal *values);
 /* Collective. What is out of balance now; where the case releases it over time, it is held. */
 PetscErrorCode HoldImbalance(Model *model, const Case *from, Imbalance *imbalance);
+/* Collective. Residual of the state as it is, also where nodes are held: what is missing to balance, n_nodes x dim, of
+ * owned nodes, N. */
+PetscErrorCode Residual(Model *model, PetscReal *residual);
+/* remainder.c. Do both stages rest, so that the first step of c takes in what the last one of `from` has left? */
+PetscBool remainder_goes_on(const Case *c, const Case *from);
+/* Collective. Before its tables are made: what the last state of the stage before leaves out of balance goes to them,
+ * or with the nodes of its cloud. */
+PetscErrorCode RemainderFrom(Model *before, Tables *tables);
+/* Room for that in the next model, before it takes its state; what is not to be held, when it has (Model.remainder),
+ * until it is forgotten. held: the sum of what is held all the same, N. */
+PetscErrorCode RemainderExpect(Model *model);
+PetscErrorCode RemainderTo(Model *model, const Case *from, const Tables *tables, PetscReal *held);
+PetscErrorCode RemainderForget(Model *model);
 /* taken_over.c. Collective. Contact points that touch and bear nothing bear from now on what free nodes lack, as far as
  * their law does. residual: n_nodes x dim, N, of owned nodes; taken: does it count no more as it is? */
 PetscErrorCode ContactTakesOver(const Model *model, const Case *from, const PetscReal *residual, PetscBool *taken);

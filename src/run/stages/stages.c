@@ -75,6 +75,8 @@ PetscErrorCode RunWriteStages(Run *r)
   PetscFunctionReturn(0);
 }
 
+#define WORTH_A_WORD 1e-3 /* of all that is out of balance: the work of less is as nothing */
+
 PetscErrorCode RunTellImbalance(const Run *r, const Imbalance *imbalance)
 {
   const PetscReal *x = imbalance->where;
@@ -85,6 +87,9 @@ PetscErrorCode RunTellImbalance(const Run *r, const Imbalance *imbalance)
   else snprintf(place, sizeof place, "(%g, %g, %g)", (double)x[0], (double)x[1], (double)x[2]);
   PetscCall(RunDirLog(r->dir, "out of balance = %.3g N in all, at most %.3g N at %s m", (double)imbalance->all,
                       (double)imbalance->most, place));
+  if (imbalance->moved > WORTH_A_WORD * imbalance->all)
+    PetscCall(RunDirLog(r->dir, "of points that moved = %.3g N in all: held, too, as a body goes; its work is external",
+                        (double)imbalance->moved));
   if (r->c->release > 0) PetscCall(RunDirLog(r->dir, "released over = %g s", (double)r->c->release));
   PetscFunctionReturn(0);
 }
