@@ -341,6 +341,8 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   if (m->method->clouds) PetscCall(ModelWarnOfObstacles(m, diag));
   PetscCall(AdviseBeside(m, diag));
   if (!m->time) PetscCall(AdviseHangs(m, diag));
+  if (!m->time && !case_goes_on(m->c)) PetscCall(AstrideLook(m));
+  astride_tell(m, diag);
   PetscCall(AdvisePassing(m, diag));
   /* later bodies and walls are elsewhere: ModelTake */
   if (!m->time) PetscCall(CheckHeld(m, (PetscBool)!case_goes_on(m->c), diag));
@@ -421,6 +423,7 @@ PetscErrorCode ModelDestroy(Model **model)
   PetscCall(PetscFree(m->weighs));
   PetscCall(PetscFree(m->pull));
   PetscCall(PetscFree(m->let_go));
+  PetscCall(PetscFree(m->astride));
   PetscCall(PetscFree(m->raised.nodal));
   PetscCall(PetscFree2(m->unheld.dof, m->unheld.turns));
   PetscCall(PetscFree(m->materials));

@@ -144,6 +144,14 @@ typedef struct {
 } LetGo;
 #define LET_GO_NUMBERS 6
 
+/* What sticks to each other through a thin wall (contact/astride.c), as it was seen first. */
+typedef struct {
+  PetscInt nodes; /* 0: nothing was seen */
+  PetscInt body[2], others;
+  PetscReal time; /* s */
+  PetscBool told;
+} Astride;
+
 typedef struct Model {
   MPI_Comm comm;
   const Case *c;
@@ -167,6 +175,7 @@ typedef struct Model {
   NodalForces forces;
   Walls *walls;     /* NULL: the case has none */
   Contact *contact; /* likewise */
+  Astride *astride; /* n_walls; NULL: nobody has looked */
   Discretisation *space;
   NodalFields *nodes; /* those of space */
   const TimeScheme *scheme;
@@ -340,6 +349,10 @@ void contact_force_on(const Model *model, PetscInt p, PetscReal force[3]);
 /* Collective. Tractions of a wall on the material after the step that was taken last, on this rank: none
  * before the first one and in a model just resumed; PetscFree them. */
 PetscErrorCode ModelTractions(const Model *model, PetscInt wall, PetscInt *n, ContactTraction **tractions);
+/* contact/astride.c. Collective. Look for nodes that reach through walls: at the start, and with each row, since bodies
+ * may come there. What was found is told once, then or later. */
+PetscErrorCode AstrideLook(Model *model);
+void astride_tell(Model *model, Diag *diag);
 /* Collective. After the last step of statics: which bodies have left all that held them. */
 PetscErrorCode ModelWarnLoose(Model *model, Diag *diag);
 /* Stored energy of one point per undeformed volume, J/m3. */

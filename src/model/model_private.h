@@ -363,6 +363,8 @@ PetscErrorCode AdviseBeside(const Model *model, Diag *diag);
 /* hangs.c. Collective. The same of what holds a body only where one that it meets is held; at the start, and if nothing
  * was said then at the end of a run, which may have brought it there. */
 PetscErrorCode AdviseHangs(Model *model, Diag *diag);
+/* contact/astride.c. Collective. What a stage before has told of a wall is not told again. */
+PetscErrorCode AstrideGoOn(Model *model, const Model *before);
 /* held.c. Collective. Nodes (n_nodes) that the body touches, on all copies: 0 for the others. */
 PetscErrorCode BodyTouches(const Model *model, PetscInt body, PetscReal *touched);
 /* The same of a history of one row that holds means over the whole run: rows.c. */

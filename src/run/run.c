@@ -93,6 +93,7 @@ PetscErrorCode RunWriteRow(Run *r)
   model_row_given(r->model);
   r->row_step = r->model->step;
   run_fill_row(r);
+  PetscCall(AstrideLook(r->model));
   PetscCall(RunWritten(r, HistoryWrite(r->dir, r->model->time, r->model->step, r->row, r->there)));
   PetscFunctionReturn(0);
 }

@@ -336,12 +336,65 @@ static void test_narrow(void **state)
   }
 }
 
+/* Two blocks of 8 x 3 cells, or one of 8 x 8 (one), and a line between that is so many cells thick. */
+static void parted(Bench *b, const char *method, PetscReal at, PetscReal thick, PetscBool one, WallSpec *wall)
+{
+  static PetscReal line[4] = {-0.5, 0, 1.5, 0};
+  const PetscReal h = 0.125, low = at - thick * h / 2, high = at + thick * h / 2;
+  bench_init(b, method, CELL_QUADRILATERAL, 0);
+  bench_grid(b, (PetscReal[]){0, 0, 0}, (PetscReal[]){1, 1, 0}, h);
+  bench_dynamic(b, 1, 0.01);
+  line[1] = line[3] = at;
+  *wall = (WallSpec){.name = (char *)"sheet", .shape = {.kind = SHAPE_LINE, .vertices = line, .n_vertices = 2}};
+  wall->thickness = thick * h;
+  b->c.n_walls = 1;
+  b->c.walls = wall;
+  if (one) return;
+  b->c.n_bodies = 2;
+  b->body[1] = b->body[0];
+  b->body[1].name = "other";
+  bench_box(b, 0, (PetscReal[]){0, low - 3 * h, 0}, (PetscReal[]){1, low, 0});
+  bench_box(b, 1, (PetscReal[]){0, high, 0}, (PetscReal[]){1, high + 3 * h, 0});
+}
+
+/* Nodes that reach through a wall are told of, by their number on any ranks, and only these. */
+static void test_astride(void **state)
+{
+  (void)state;
+  static const struct {
+    const char *method, *words;
+    PetscReal at, thick;
+    PetscBool one;
+  } said[] = {{"mpm", "'body' and 'other' on its two sides stick to each other by 18 nodes", 0.53, 0, PETSC_FALSE},
+              {"mpm", "'body' and 'other' on its two sides stick to each other by 9 nodes", 0.5, 0, PETSC_FALSE},
+              {"fem", "'body' and 'other' on its two sides stick to each other by 9 nodes", 0.5, 0, PETSC_FALSE},
+              {"mpm", "what of 'body' is on its two sides sticks to itself by 9 nodes", 0.5, 0, PETSC_TRUE},
+              {"mpm", NULL, 0.5, 2, PETSC_FALSE}};
+  InterfaceSpec slide = {.name = (char *)"slide", .n_between = 2, .between = (char *[]){"body", "other"}};
+  WallSpec wall;
+  Bench b;
+  EACH_OF (k, said) {
+    parted(&b, said[k].method, said[k].at, said[k].thick, said[k].one, &wall);
+    bench_warned(&b, PETSC_COMM_WORLD, "walls[0]", said[k].words);
+  }
+  parted(&b, "mpm", 0.53, 0, PETSC_FALSE, &wall);
+  b.c.n_interfaces = 1;
+  b.c.interfaces = &slide;
+  bench_warned(&b, PETSC_COMM_WORLD, "walls[0]", NULL);
+  /* both sides of a slot meet what is in it: that is not on both sides of a wall */
+  parted(&b, "mpm", 0.5, 0, PETSC_TRUE, &wall);
+  wall = (WallSpec){.name = (char *)"slot", .shape = {.kind = SHAPE_BOX, .min = {0.5, 0.125}, .max = {0.625, 0.875}}};
+  wall.inside = PETSC_TRUE;
+  bench_box(&b, 0, wall.shape.min, wall.shape.max);
+  bench_warned(&b, PETSC_COMM_WORLD, "walls[0]", NULL);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_slides), cmocka_unit_test(test_lifts),   cmocka_unit_test(test_rests),
     cmocka_unit_test(test_flows),  cmocka_unit_test(test_through), cmocka_unit_test(test_dent),
-    cmocka_unit_test(test_smooth), cmocka_unit_test(test_narrow),
+    cmocka_unit_test(test_smooth), cmocka_unit_test(test_narrow),  cmocka_unit_test(test_astride),
   };
   return run_model_tests_in_turns(argc, argv, tests);
 }

@@ -445,4 +445,25 @@ for way in "friction: 0.3, method=fem" "friction: 0.3, method=gmm" "contact: sti
   awk -F, 'END { exit !(NR > 5 && ($NF / -31000 - 1) ^ 2 < 0.02 ^ 2) }' edge/history.csv || fail "$name: $(tail -n 1 edge/history.csv)"
 done
 
+# Bodies that come to both sides of a thin wall stick to each other through it: told at the end, though the wall has gone.
+cat >sheet.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, step: 0.02, end: 0.4}
+grid: {box: {min: [0, 0], max: [2, 0.5]}, size: 0.125}
+bodies:
+  - {name: left, shape: {box: {min: [0.5, 0.125], max: [0.75, 0.375]}}, material: rubber, velocity: [1, 0]}
+  - {name: right, shape: {box: {min: [1.25, 0.125], max: [1.5, 0.375]}}, material: rubber, velocity: [-1, 0]}
+materials:
+  rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0}
+walls:
+  - {name: sheet, shape: {line: [[1, 0], [1, 0.5]]}, until: 0.3}
+output: {every: end, history: 0.1}
+END
+expect "nothing is there at first" 0 "$talus" check sheet.yaml
+! grep -q "parts nothing" err.txt || fail "$name: it is told of"
+expect "what came" 0 "$talus" run sheet.yaml --out sheet --quiet
+says err.txt "wall 'sheet' is thinner than nodes reach and parts nothing (seen at t = 0."
+says err.txt "'left' and 'right' on its two sides stick to each other by"
+
 finish

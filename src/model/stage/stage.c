@@ -277,6 +277,9 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, const Model
   stresses_check(m, diag);
   PetscCall(CheckHeld(m, PETSC_TRUE, diag));
   if (next) PetscCall(AdviseHangs(m, diag));
+  if (next) PetscCall(AstrideGoOn(m, before));
+  PetscCall(AstrideLook(m));
+  astride_tell(m, diag);
   if (next) PetscCall(WallsCome(m, from, diag));
   PetscCall(BeginTracers(m, next ? from : NULL, diag));
   if (next) PetscCall(BeginMeasures(m, from));

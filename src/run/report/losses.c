@@ -512,6 +512,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   PetscCall(WarnOfPassed(m, diag));
   PetscCall(WarnOfFailed(m, diag));
   PetscCall(AdviseHangs(m, diag));
+  astride_tell(m, diag);
   warn_of_sunk(m, PETSC_FALSE, diag);
   warn_of_no_limit(m, diag);
   warn_of_no_factor(m, diag);

@@ -120,6 +120,7 @@ PetscErrorCode RunNextStage(Run *r, Diag *diag)
   r->starts[k] = case_time(r->c, r->model->time); /* whatever a search has found */
   diag_of_stage(diag, r->stage, r->whole->stages[r->stage].name);
   if (r->whole->stage_case[k]->analysis.type != ANALYSIS_EXPLICIT) warn_of_sunk(r->model, PETSC_TRUE, diag);
+  astride_tell(r->model, diag);
   run_begin_stage(r, k);
   diag_of_stage(diag, k, stage->name);
   PetscCall(ModelSucceed(r->c, diag, &r->model, &imbalance));
