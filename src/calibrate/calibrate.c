@@ -94,7 +94,8 @@ static PetscErrorCode Refine(CalibrateRun *r)
   for (PetscInt round = 0; round < r->c->rounds && goes_on(r); ++round) {
     if (region_doubt(&r->region) <= r->c->resolve) break;
     const PetscInt before = r->n, n = region_next(&r->region, r->n, r->x, r->c->batch, next);
-    for (PetscInt i = 0; i < n; ++i) PetscCall(CalibrateAdd(r, r->region.x + next[i] * r->region.dim, &point));
+    for (PetscInt i = 0; i < n; ++i)
+      PetscCall(CalibrateAdd(r, r->region.x + next[i] * r->region.dim, PETSC_FALSE, &point));
     if (r->n == before) break;
     fprintf(r->told, "round %" PetscInt_FMT " of %" PetscInt_FMT ": %" PetscInt_FMT " more sets of parameters\n",
             round + 1, r->c->rounds, r->n - before);
@@ -112,7 +113,7 @@ static PetscErrorCode Confirm(CalibrateRun *r)
   for (int k = 0; k < TRIES && goes_on(r) && !calibrate_is_confirmed(r); ++k) {
     const PetscInt before = r->n;
     PetscInt point;
-    PetscCall(CalibrateAdd(r, r->region.x + r->region.best * r->region.dim, &point));
+    PetscCall(CalibrateAdd(r, r->region.x + r->region.best * r->region.dim, PETSC_TRUE, &point));
     if (goes_on(r) && r->n > before) PetscCall(RunAndFit(r));
     r->confirmed = point;
     if (r->n == before) break;

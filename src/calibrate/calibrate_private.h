@@ -24,9 +24,9 @@ typedef struct {
 } CalibrateRun;
 
 /* calibrate_runs.c */
-/* Plan runs of all instruments at x, unless they are there. *point: their number. Mistakes go to
- * diag. */
-PetscErrorCode CalibrateAdd(CalibrateRun *r, const PetscReal *x, PetscInt *point);
+/* Plan runs of all instruments at x, which is rounded, unless they are there. `meets`: not so far that targets are
+ * missed. *point: their number. Mistakes go to diag. */
+PetscErrorCode CalibrateAdd(CalibrateRun *r, const PetscReal *x, PetscBool meets, PetscInt *point);
 /* The first points: the corners of the ranges if there are enough, the others evenly. */
 PetscErrorCode CalibrateDesign(CalibrateRun *r);
 /* What target k is at a point; NaN if its run did not come to its end. */

@@ -124,8 +124,7 @@ static void tell_best(FILE *out, const CalibrateRun *r)
   fprintf(out, "\n%s:", region->inside ? "Best point" : "Nearest point");
   for (PetscInt p = 0; p < r->c->n_parameters; ++p) {
     const Parameter *parameter = &r->c->parameters[p];
-    PetscReal x = best[p];
-    fprintf(out, "%s %s = %s %s", p ? "," : "", calibrate_label(parameter), parameter_text(parameter, &x, text),
+    fprintf(out, "%s %s = %s %s", p ? "," : "", calibrate_label(parameter), parameter_text(parameter, best[p], text),
             parameter->unit ? parameter->unit : "");
   }
   fputs("\n\n| measure | target | predicted | its run |\n|---|---|---|---|\n", out);
@@ -211,7 +210,7 @@ static void write_runs(FILE *out, const CalibrateRun *r)
   write_header(out, r, PETSC_FALSE);
   for (PetscInt i = 0; i < r->n; ++i) {
     for (PetscInt p = 0; p < r->c->n_parameters; ++p)
-      fprintf(out, "%s%s", p ? "," : "", parameter_text(&r->c->parameters[p], &r->x[i * r->c->n_parameters + p], text));
+      fprintf(out, "%s%s", p ? "," : "", parameter_text(&r->c->parameters[p], r->x[i * r->c->n_parameters + p], text));
     for (PetscInt k = 0; k < r->n_targets; ++k) {
       const PetscReal value = calibrate_found(r, i, k);
       if (PetscIsNanReal(value)) fputc(',', out);

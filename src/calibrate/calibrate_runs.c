@@ -18,9 +18,8 @@ static PetscErrorCode Settings(const CalibrateRun *r, const Instrument *instrume
   if (r->options->quick) PetscCall(SettingListAppend(set, &instrument->quick, NULL, NULL));
   for (PetscInt p = 0; p < r->c->n_parameters; ++p) {
     SettingList replaced = {0};
-    PetscReal at = x[p];
     PetscCall(
-      SettingListAppend(&replaced, set, r->c->parameters[p].name, parameter_text(&r->c->parameters[p], &at, text)));
+      SettingListAppend(&replaced, set, r->c->parameters[p].name, parameter_text(&r->c->parameters[p], x[p], text)));
     PetscCall(SettingListClear(set));
     *set = replaced;
   }
@@ -28,13 +27,13 @@ static PetscErrorCode Settings(const CalibrateRun *r, const Instrument *instrume
 }
 
 /* friction=41.2,cohesion=10 */
-static void name_point(const CalibrateRun *r, PetscReal *x, char name[200])
+static void name_point(const CalibrateRun *r, const PetscReal *x, char name[200])
 {
   char text[32];
   size_t used = 0;
   for (PetscInt p = 0; p < r->c->n_parameters && used < 200; ++p)
     used += (size_t)snprintf(name + used, 200 - used, "%s%.40s=%s", p ? "," : "", r->c->parameters[p].name,
-                             parameter_text(&r->c->parameters[p], &x[p], text));
+                             parameter_text(&r->c->parameters[p], x[p], text));
   for (char *c = name; *c; ++c)
     if (!isalnum((unsigned char)*c) && !strchr("._-+=,", *c)) *c = '_';
 }
@@ -56,19 +55,29 @@ static PetscErrorCode AddMember(CalibrateRun *r, PetscInt i, const char *name, c
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode CalibrateAdd(CalibrateRun *r, const PetscReal *x, PetscInt *point)
+/* Few digits, as names of directories want them, but so many that the point stays the same to all targets. */
+static void round_point(const CalibrateRun *r, const PetscReal *x, PetscBool meets, PetscReal *at)
+{
+  enum { FINEST = 5 };
+  for (int finer = 0; finer <= FINEST; ++finer) {
+    for (PetscInt p = 0; p < r->c->n_parameters; ++p) at[p] = parameter_round(&r->c->parameters[p], x[p], finer);
+    if (!r->region.n || region_alike(&r->region, x, at, meets)) return;
+  }
+}
+
+PetscErrorCode CalibrateAdd(CalibrateRun *r, const PetscReal *x, PetscBool meets, PetscInt *point)
 {
   const PetscInt dim = r->c->n_parameters;
   PetscReal at[SURROGATE_MOST];
   char name[200];
 
   PetscFunctionBeginUser;
-  PetscCall(PetscArraycpy(at, x, dim));
+  round_point(r, x, meets, at);
   name_point(r, at, name);
   for (*point = 0; *point < r->n; ++*point) {
-    PetscInt same = 0;
-    for (PetscInt p = 0; p < dim; ++p) same += PetscAbsReal(r->x[*point * dim + p] - at[p]) < 1e-9;
-    if (same == dim) PetscFunctionReturn(0);
+    PetscBool same;
+    PetscCall(PetscArraycmp(r->x + *point * dim, at, dim, &same));
+    if (same) PetscFunctionReturn(0);
   }
   PetscCall(PetscRealloc((size_t)((r->n + 1) * dim) * sizeof(PetscReal), &r->x));
   PetscCall(PetscArraycpy(r->x + r->n * dim, at, dim));
@@ -89,7 +98,7 @@ PetscErrorCode CalibrateDesign(CalibrateRun *r)
     if (i < first)
       for (PetscInt d = 0; d < dim; ++d) x[d] = (PetscReal)(i >> d & 1);
     else region_halton(dim, i - first, x);
-    PetscCall(CalibrateAdd(r, x, &point));
+    PetscCall(CalibrateAdd(r, x, PETSC_FALSE, &point));
   }
   PetscFunctionReturn(0);
 }

@@ -6,8 +6,11 @@
  * powers of it more than by sums. */
 PetscBool parameter_is_logarithmic(const Parameter *p);
 PetscReal parameter_at(const Parameter *p, PetscReal x);
-/* Rounded to a thousandth of the range as it is divided there; x follows. Returns text. */
-const char *parameter_text(const Parameter *p, PetscReal *x, char text[32]);
+/* The share of the value next to that at x which has no more digits than tell a thousandth of the range, as it is
+ * divided there, and `finer` more. */
+PetscReal parameter_round(const Parameter *p, PetscReal x, int finer);
+/* The value at x, with the fewest digits that give x back. Returns text. */
+const char *parameter_text(const Parameter *p, PetscReal x, char text[32]);
 /* With so many digits at least, and as many more as numbers want that lie `apart` from each other: a hundredth of that
  * is seen. Returns text. */
 const char *number_text(PetscReal value, PetscReal apart, int least, char text[32]);

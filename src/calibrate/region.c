@@ -138,6 +138,20 @@ void region_range(const Region *r, PetscInt parameter, PetscReal *low, PetscReal
   }
 }
 
+PetscBool region_alike(const Region *r, const PetscReal *a, const PetscReal *b, PetscBool meets)
+{
+  PetscBool alike = PETSC_TRUE;
+  for (PetscInt k = 0; k < r->n_targets && alike; ++k) {
+    const PetscReal u = r->target[k]->uncertainty, target = r->target[k]->value;
+    PetscReal at_a, at_b, own, unused;
+    surrogate_at(r->surrogate[k], a, &at_a, &own);
+    surrogate_at(r->surrogate[k], b, &at_b, &unused);
+    alike = PetscAbsReal(at_a - at_b) <= 0.1 * (u + own);
+    if (meets && PetscAbsReal(at_a - target) <= u) alike = alike && PetscAbsReal(at_b - target) <= u;
+  }
+  return alike;
+}
+
 PetscReal region_correlation(const Region *r, PetscInt a, PetscInt b)
 {
   PetscReal n = 0, mean[2] = {0, 0}, c[3] = {0, 0, 0};

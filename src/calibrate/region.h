@@ -30,6 +30,9 @@ PetscErrorCode RegionDestroy(Region *region);
 void region_halton(PetscInt dim, PetscInt i, PetscReal *x);
 /* Range of a parameter in the region, in [0, 1]. */
 void region_range(const Region *r, PetscInt parameter, PetscReal *low, PetscReal *high);
+/* Are a and b the same to all targets? Predictions differ by a tenth of uncertainty and own error at most; with `meets`
+ * none that meets its target at a misses it at b. */
+PetscBool region_alike(const Region *r, const PetscReal *a, const PetscReal *b, PetscBool meets);
 /* How parameters a and b go together in it: their correlation. */
 PetscReal region_correlation(const Region *r, PetscInt a, PetscInt b);
 /* The largest doubt in the region; of its best point if it is empty. */

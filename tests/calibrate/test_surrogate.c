@@ -6,6 +6,7 @@
 #include <stdlib.h>
 /* cmocka wants those before it */
 #include <cmocka.h>
+#include "calibrate/parameter.h"
 #include "calibrate/region.h"
 
 #define OK(call) assert_int_equal((call), 0)
@@ -229,12 +230,62 @@ static void test_next(void **state)
   OK(SurrogateDestroy(&s));
 }
 
+/* Values have no more digits than wanted, and their text gives their share back: that of a thousandth of the range and,
+ * where that is asked, of parts of it. */
+static void test_rounding(void **state)
+{
+  static const struct {
+    PetscReal low, high, exact;
+    int finer;
+    const char *text;
+  } values[] = {{0, 1000, 5.4356, 0, "5"},
+                {0, 1000, 5.4356, 1, "5.4"},
+                {0, 1000, 5.4356, 3, "5.436"},
+                {0.5e6, 2e6, 999587.3, 0, "1000000"},
+                {0.5e6, 2e6, 999587.3, 2, "999590"},
+                {-1000, -1, -5.4356, 1, "-5.44"},
+                {1000.0, 1000.2, 1000.12345678, 0, "1000.1235"},
+                {0.123412341234123, 1, 0, 0, "0.123412341234123"},
+                {5e4, 1e7, 188760, 0, "189000"}};
+  char text[32];
+  (void)state;
+  for (size_t k = 0; k < sizeof values / sizeof values[0]; ++k) {
+    const Parameter p = {.name = "p", .low = values[k].low, .high = values[k].high};
+    const PetscReal size = p.high - p.low, even = PetscMax((values[k].exact - p.low) / size, 0);
+    const PetscReal share =
+      parameter_is_logarithmic(&p) ? PetscLogReal(values[k].exact / p.low) / PetscLogReal(p.high / p.low) : even;
+    assert_string_equal(parameter_text(&p, parameter_round(&p, share, values[k].finer), text), values[k].text);
+  }
+  for (int k = 0; k <= 500; ++k) { /* over decades, too, where the digits change with the size */
+    const Parameter p = {.name = "p", .low = 0.05e6, .high = 10e6};
+    const PetscReal x = parameter_round(&p, k / 500., 0), value = strtod(parameter_text(&p, x, text), NULL);
+    assert_float_equal(value / parameter_at(&p, x), 1, 1e-12);
+  }
+}
+
+/* A step that is too coarse for a thin region is told from one that is not, along it and across. */
+static void test_alike(void **state)
+{
+  const Target a = {.value = 1, .uncertainty = 1e-3};
+  const Target *const targets[] = {&a};
+  Surrogate *s = learn(2, 12, sum, 0);
+  const Region region = {.dim = 2, .n_targets = 1, .target = targets, .surrogate = &s};
+  const PetscReal at[] = {0.5, 0.5}, along[] = {0.51, 0.49}, near[] = {0.50009, 0.5}, off[] = {0.5002, 0.5};
+  const PetscReal edge[] = {0.50096, 0.5}, beyond[] = {0.50104, 0.5};
+  (void)state;
+  assert_true(region_alike(&region, at, along, PETSC_TRUE) && region_alike(&region, at, near, PETSC_TRUE));
+  assert_false(region_alike(&region, at, off, PETSC_FALSE));
+  assert_true(region_alike(&region, edge, beyond, PETSC_FALSE));
+  assert_false(region_alike(&region, edge, beyond, PETSC_TRUE));
+  OK(SurrogateDestroy(&s));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_functions), cmocka_unit_test(test_noise), cmocka_unit_test(test_square),
-    cmocka_unit_test(test_strip),     cmocka_unit_test(test_next),  cmocka_unit_test(test_rod),
-    cmocka_unit_test(test_wide),
+    cmocka_unit_test(test_functions), cmocka_unit_test(test_noise),    cmocka_unit_test(test_square),
+    cmocka_unit_test(test_strip),     cmocka_unit_test(test_next),     cmocka_unit_test(test_rod),
+    cmocka_unit_test(test_wide),      cmocka_unit_test(test_rounding), cmocka_unit_test(test_alike),
   };
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);

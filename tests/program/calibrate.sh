@@ -100,13 +100,29 @@ expect "a narrow range" 0 "$talus" calibrate narrow.yaml --out narrow
 says out.txt "| p | 1000.113 to 1000.133 Pa | 1000 to 1000.2 |" "| -1000.123 +- 0.01 | -1000.123 +- " " -1000.123 N |"
 awk -F, 'NR > 1 && !seen[$1]++ {++n} END {exit n < 600}' narrow/region.csv || fail "$name: points of the region are the same"
 
+# Regions that are narrow beside their range: 91.03 +- 0.03 um in 0.99926 to 0.99992 MPa, and 4.95 +- 0.3 um by 5.1 to 5.8 Pa, which is no end of the range
+sed -e 's/^title.*/title: Thin/' -e 's/target: 600, uncertainty: 0.7/target: 91.03, uncertainty: 0.03/' -e 's/points: 5/points: 6/' far.yaml >thin.yaml
+expect "a thin region" 0 "$talus" calibrate thin.yaml --out thin
+says out.txt "The run at the best point meets all targets"
+grep -q "^Best point: E = 999[4-7][0-9]0 Pa" thin/report.md || fail "$name: $(cat thin/report.md)"
+cat >beside.yaml <<'END'
+title: Beside the end
+parameters: {p: {range: [-1000, -0.1], unit: Pa}}
+instruments:
+  free: {case: free.yaml, set: {"loads.tractions[0].value": [0, $p]}, measures: [{measure: top, times: -1e6, unit: um, target: 4.95, uncertainty: 0.3}]}
+points: 5
+rounds: 0
+END
+expect "beside the end of the range" 0 "$talus" calibrate beside.yaml --out beside
+says out.txt "The run at the best point meets all targets"
+
 # A wave from five runs: what is predicted is not what is found, and that is said
 sed 's/^  floor:.*/&\n  wave: {formula: sin(0.3 * floor)}/' free.yaml >wave-case.yaml
 cat >wave.yaml <<'END'
 title: A wave
 parameters: {p: {range: [-103, -60], unit: Pa}}
 instruments:
-  free: {case: wave-case.yaml, set: {"loads.tractions[0].value": [0, $p]}, measures: [{measure: wave, target: 0.5, uncertainty: 1e-4}]}
+  free: {case: wave-case.yaml, set: {"loads.tractions[0].value": [0, $p]}, measures: [{measure: wave, target: 0.5, uncertainty: 1e-7}]}
 points: 5
 rounds: 0
 END
