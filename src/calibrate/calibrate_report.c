@@ -43,12 +43,14 @@ static void tell_targets(FILE *out, const CalibrateRun *r)
   }
 }
 
-/* What the region says of a parameter: one whose whole range is possible is not determined. */
-static const char *verdict_of(PetscReal low, PetscReal high)
+/* What the region says of a parameter: one whose whole range is possible is not determined. The region touches an end
+ * of the range if it is no farther from it than such a part of its own width as its outermost points may lack. */
+static const char *verdict_of(PetscReal low, PetscReal high, PetscInt inside)
 {
+  const PetscReal near = (high - low) * PetscMax(0.02, 3 / (PetscReal)inside);
   if (high - low > 0.95) return "not determined";
-  if (low < 0.01) return "not bounded from below by what was looked at";
-  return high > 0.99 ? "not bounded from above by what was looked at" : "";
+  if (low < near) return "not bounded from below by what was looked at";
+  return high > 1 - near ? "not bounded from above by what was looked at" : "";
 }
 
 /* How far apart values of a parameter lie in the region; in all of its range if there is no region of two points. */
@@ -75,7 +77,7 @@ static void tell_ranges(FILE *out, const CalibrateRun *r)
             number_text(parameter_at(parameter, high), spread(r, p), 4, text[1]),
             parameter->unit ? parameter->unit : "", number_text(parameter->low, all, 6, text[2]),
             number_text(parameter->high, all, 6, text[3]),
-            parameter_is_logarithmic(parameter) ? ", by the logarithm" : "", verdict_of(low, high));
+            parameter_is_logarithmic(parameter) ? ", by the logarithm" : "", verdict_of(low, high, r->region.inside));
   }
 }
 

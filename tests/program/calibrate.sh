@@ -115,6 +115,7 @@ rounds: 0
 END
 expect "beside the end of the range" 0 "$talus" calibrate beside.yaml --out beside
 says out.txt "The run at the best point meets all targets"
+! grep -q "not bounded" out.txt || fail "$name: $(cat out.txt)"
 
 # A wave from five runs: what is predicted is not what is found, and that is said
 sed 's/^  floor:.*/&\n  wave: {formula: sin(0.3 * floor)}/' free.yaml >wave-case.yaml
