@@ -3,10 +3,13 @@
 #include <string.h>
 #include "picture/gnuplot.h"
 #include "picture/label.h"
+#include "picture/ticks.h"
 
 #define WIDTH 900
 #define HEIGHT 600
-#define LETTER 11 /* pixels of one in a label, about */
+#define LETTER 11    /* pixels of one in a label, about */
+#define KEY_LINE 23  /* pixels of a line of the legend */
+#define KEY_SAMPLE 7 /* letters that a sample and the air about it take */
 #define SHEET_WIDTH 640
 #define SHEET_HEIGHT 460
 
@@ -72,11 +75,11 @@ static void write_range(FILE *out, const char *axis, PetscBool logarithmic, Pets
   }
 }
 
-/* How many letters have room beside the figure, or above and below it. */
-static PetscInt letters(const Figure *figure, PetscBool beside)
+/* How many letters have room above and below the figure. */
+static PetscInt letters_across(const Figure *figure)
 {
   const int width = figure->width ? figure->width : WIDTH, height = figure->height ? figure->height : HEIGHT;
-  return (PetscInt)((beside ? height : width) / (LETTER * label_scale(width, height)));
+  return (PetscInt)(width / (LETTER * label_scale(width, height)));
 }
 
 static void write_label(FILE *out, const char *what, const char *text, PetscInt most)
@@ -99,7 +102,7 @@ static const char *middle_space(const char *text)
 /* In two lines, if it is wider than the picture. */
 static void write_title(FILE *out, const Figure *figure)
 {
-  const PetscInt fits = letters(figure, PETSC_FALSE);
+  const PetscInt fits = letters_across(figure);
   const char *middle = figure->title && (PetscInt)strlen(figure->title) > fits ? middle_space(figure->title) : NULL;
   char *first;
   if (!middle || !(first = strndup(figure->title, (size_t)(middle - figure->title)))) {
@@ -157,90 +160,119 @@ static void count_series(const Figure *figure, const FigureSeries *s, const Pets
   }
 }
 
-/* Of the legend with its distance from the frame, in shares of what the frame encloses. In pixels: a sample and the air
- * about it are as wide as seven letters; a line takes 23, the air above and below the lines 25; axes with their numbers
- * and labels take 130 from the width, 100 more where there is a right one, and 105 from the height, with the title. */
+/* What a legend names: how much, and how many letters the longest name has. */
+static PetscInt count_names(const Figure *figure, size_t *longest)
+{
+  PetscInt named = figure->n_bands + (figure->slope != 0);
+  *longest = 8;
+  for (PetscInt k = 0; k < figure->n_series; ++k) {
+    if (!figure->series[k].name) continue;
+    ++named;
+    *longest = PetscMax(*longest, strlen(figure->series[k].name));
+  }
+  for (PetscInt k = 0; k < figure->n_bands; ++k) *longest = PetscMax(*longest, strlen(figure->bands[k].name));
+  return named;
+}
+
+/* Of the legend with its distance from the frame, in shares of what the frame encloses. In pixels: the air above and
+ * below its lines is 25; axes with their numbers and labels take 130 from the width, 100 more where there is a right
+ * one, and 105 from the height, with the title. */
 static void key_size(const Figure *figure, PetscReal size[2])
 {
   const int width = figure->width ? figure->width : WIDTH, height = figure->height ? figure->height : HEIGHT;
   const PetscReal scale = label_scale(width, height);
-  PetscInt named = figure->n_bands + (figure->slope != 0);
-  size_t longest = 8;
-  for (PetscInt k = 0; k < figure->n_series; ++k) {
-    if (!figure->series[k].name) continue;
-    ++named;
-    longest = PetscMax(longest, strlen(figure->series[k].name));
-  }
-  for (PetscInt k = 0; k < figure->n_bands; ++k) longest = PetscMax(longest, strlen(figure->bands[k].name));
-  const PetscReal wide = scale * LETTER * (7 + (PetscReal)longest), high = scale * (25 + 23 * (PetscReal)named);
+  size_t longest;
+  const PetscReal high = scale * (25 + KEY_LINE * (PetscReal)count_names(figure, &longest));
+  const PetscReal wide = scale * LETTER * (KEY_SAMPLE + (PetscReal)longest);
   size[0] = PetscMin(wide / (width - scale * (figure->right_label ? 230 : 130)), 0.95);
   size[1] = PetscMin(high / (height - scale * 105), 0.95);
 }
 
-/* The legend goes where no curves are; where several corners are as good, to the top and to the left, and below where
- * none is free. */
-static void write_key(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
+/* The corner where no curves are; where several are as good, at the top and at the left. PETSC_FALSE: none is free. */
+static PetscBool find_corner(const Figure *figure, const PetscReal *min, const PetscReal *max, int *right, int *top)
 {
   PetscInt count[2][2] = {{0, 0}, {0, 0}};
   PetscReal size[2];
-  int right = figure->slope < 0, top = 1; /* where falling curves leave room */
+  *right = figure->slope < 0, *top = 1; /* where falling curves leave room */
   key_size(figure, size);
   for (PetscInt k = 0; k < figure->n_series; ++k) count_series(figure, &figure->series[k], min, max, size, count);
   for (int y = 1; y >= 0; --y)
     for (int x = 0; x < 2; ++x)
-      if (count[x][y] < count[right][top]) right = x, top = y;
-  if (count[right][top]) fputs("set key below noopaque nobox height 0.3\n", out);
+      if (count[x][y] < count[*right][*top]) *right = x, *top = y;
+  return (PetscBool)!count[*right][*top];
+}
+
+static void write_key(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
+{
+  int right, top;
+  if (!find_corner(figure, min, max, &right, &top)) fputs("set key below noopaque nobox height 0.3\n", out);
   else fprintf(out, "set key %s %s\n", top ? "top" : "bottom", right ? "right" : "left");
 }
 
-/* Digits in which the numbers of an axis differ, six at least: the ticks of a narrow range are a tenth of it apart. */
-static int tick_digits(PetscReal min, PetscReal max)
+/* Lines of the legend below the figure, which stand side by side as far as they have room. */
+static PetscInt lines_below(const Figure *figure, const PetscReal *min, const PetscReal *max)
 {
-  const PetscReal size = PetscMax(PetscAbsReal(min), PetscAbsReal(max));
-  if (!(max - min > 1e-12 * size)) return 6;
-  return (int)PetscMax(6, PetscCeilReal(PetscLog10Real(size / (max - min))) + 2);
+  size_t longest;
+  int right, top;
+  const PetscInt named = count_names(figure, &longest);
+  const PetscInt beside = PetscMax(letters_across(figure) / (KEY_SAMPLE + (PetscInt)longest), 1);
+  return named && !find_corner(figure, min, max, &right, &top) ? (named + beside - 1) / beside : 0;
 }
 
-/* Long numbers have room for four steps of 1, 2 or 5 along a figure. */
-static void write_long_ticks(FILE *out, PetscReal min, PetscReal max)
+/* How many letters have room along an upright axis, about its middle: that stands the higher, the more is below. In
+ * pixels: the numbers and the label of x and the air below take 45 more than the air above. */
+static PetscInt letters_beside(const Figure *figure, const PetscReal *min, const PetscReal *max)
 {
-  if (tick_digits(min, max) <= 6) return;
-  const PetscReal quarter = (max - min) / 4, decade = PetscPowReal(10, PetscFloorReal(PetscLog10Real(quarter)));
-  const PetscReal share = quarter / decade;
-  fprintf(out, "set xtics %.15g\n", (double)(decade * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10)));
+  const int width = figure->width ? figure->width : WIDTH, height = figure->height ? figure->height : HEIGHT;
+  const PetscReal scale = label_scale(width, height);
+  const PetscReal below = scale * (45 + KEY_LINE * (PetscReal)lines_below(figure, min, max));
+  return (PetscInt)((height - below) / (LETTER * scale));
 }
 
 /* Half of a tick's number stands beyond the end of the axis: gnuplot leaves room for three letters. */
-static void write_right_margin(FILE *out, PetscReal min, PetscReal max)
+static PetscReal right_margin(PetscReal min, PetscReal max)
 {
-  const int digits = tick_digits(min, max);
-  char number[32];
-  snprintf(number, sizeof number, "%.*g", digits > 6 ? digits : 3, (double)max);
-  snprintf(number, sizeof number, "%.*g", digits, strtod(number, NULL));
-  fprintf(out, "set rmargin %g\n", PetscMax(3, 0.5 * (double)strlen(number) + 1));
+  return PetscMax(3, 0.5 * (PetscReal)ticks_letters(min, max) + 1);
+}
+
+/* How many letters have room along the axis of x. Beside it stand numbers of y with their label, and half a number of
+ * x. */
+static PetscReal letters_along(const Figure *figure, const PetscReal *min, const PetscReal *max)
+{
+  enum { LABEL = 4 }; /* letters that a label and the air about it take across */
+  const PetscReal left = LABEL + (PetscReal)ticks_letters(min[AXIS_LEFT], max[AXIS_LEFT]);
+  const PetscReal right = figure->right_label ? LABEL + (PetscReal)ticks_letters(min[AXIS_RIGHT], max[AXIS_RIGHT])
+                                              : right_margin(min[AXIS_X], max[AXIS_X]);
+  return (PetscReal)letters_across(figure) - left - right;
+}
+
+static void write_x_ticks(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
+{
+  const PetscReal step = ticks_step(min[AXIS_X], max[AXIS_X], letters_along(figure, min, max));
+  if (step > 0) fprintf(out, "set xtics %.15g\n", (double)step);
 }
 
 /* Has the figure a right axis? Where it has, ticks of the left one end at the left. */
 static void write_right_axis(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
 {
   if (!figure->right_label) {
-    write_right_margin(out, min[AXIS_X], max[AXIS_X]);
+    fprintf(out, "set rmargin %g\n", (double)right_margin(min[AXIS_X], max[AXIS_X]));
     return;
   }
-  write_label(out, "y2label", figure->right_label, letters(figure, PETSC_TRUE));
+  write_label(out, "y2label", figure->right_label, letters_beside(figure, min, max));
   write_range(out, "y2", PETSC_FALSE, min[AXIS_RIGHT], max[AXIS_RIGHT], 0.06);
-  fprintf(out, "set y2tics\nset format y2 '%%.%dg'\n", tick_digits(min[AXIS_RIGHT], max[AXIS_RIGHT]));
+  fprintf(out, "set y2tics\nset format y2 '%%.%dg'\n", ticks_digits(min[AXIS_RIGHT], max[AXIS_RIGHT]));
 }
 
 static void write_axes(FILE *out, const Figure *figure, const PetscReal *min, const PetscReal *max)
 {
   write_title(out, figure);
-  write_label(out, "xlabel", figure->x_label, letters(figure, PETSC_FALSE));
-  write_label(out, "ylabel", figure->y_label, letters(figure, PETSC_TRUE));
+  write_label(out, "xlabel", figure->x_label, letters_across(figure));
+  write_label(out, "ylabel", figure->y_label, letters_beside(figure, min, max));
   /* gnuplot's own has five decimals, in which small numbers are the same */
-  fprintf(out, "set format '%%g'\nset format x '%%.%dg'\nset format y '%%.%dg'\n", tick_digits(min[0], max[0]),
-          tick_digits(min[1], max[1]));
-  if (!figure->log_x) write_long_ticks(out, min[AXIS_X], max[AXIS_X]);
+  fprintf(out, "set format '%%g'\nset format x '%%.%dg'\nset format y '%%.%dg'\n", ticks_digits(min[0], max[0]),
+          ticks_digits(min[1], max[1]));
+  if (!figure->log_x) write_x_ticks(out, figure, min, max);
   if (figure->log_x) fputs("set logscale x\nset format x '%g'\n", out);
   if (figure->log_y) fputs("set logscale y\nset format y '%.0e'\n", out);
   if (figure->log_y && max[1] / min[1] < 1e3) fputs("set format y '%g'\n", out);

@@ -345,7 +345,7 @@ static void test_narrow_ticks(void **state)
   assert_int_equal(FigureWrite(&figure, path, diag, &done), 0);
   assert_int_equal(DiagDestroy(&diag), 0);
   char *svg = TestRead(folder, "a.svg");
-  assert_true(Place(svg, ">1000.125<", 0) - Place(svg, ">1000.12<", 0) > 9 * 11);
+  assert_true(Place(svg, ">1000.122<", 0) - Place(svg, ">1000.12<", 0) > 9 * 11);
   free(svg);
   TestRemove(folder);
 }

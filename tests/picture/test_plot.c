@@ -6,6 +6,7 @@
 #include "picture/figure.h"
 #include "picture/label.h"
 #include "picture/plot.h"
+#include "picture/ticks.h"
 #include "picture/scene/field.h"
 #include "picture/raster/raster.h"
 #include "picture/raster/spacing.h"
@@ -232,23 +233,25 @@ static void test_units(void **state)
   assert_true(figure_unit("m", 0, unit) == 1 && figure_unit("Pa", INFINITY, unit) == 1);
 }
 
-/* A gnuplot in this folder that draws with letters, into its file `text`. */
-static void LetterGnuplot(const char *folder, const char *paths)
+/* In place of gnuplot, into a file `text`: one that draws with letters, and one that keeps what it is told. */
+#define LETTERS \
+  "sed \"s,^set terminal.*,set terminal dumb 100 30,; s,^set output.*,set output '$folder/text',\" | gnuplot -d -"
+#define SCRIPT "cat >\"$folder/text\""
+
+static void OtherGnuplot(const char *folder, const char *paths, const char *command)
 {
   char path[128];
   snprintf(path, sizeof path, "%s/gnuplot", folder);
   FILE *out = fopen(path, "w");
   assert_non_null(out);
   fprintf(out, "#!/bin/sh\nPATH='%s'\n", paths);
-  fprintf(out, "sed 's,^set terminal.*,set terminal dumb 100 30,; s,^set output.*,set output \"%s/text\",' |\n",
-          folder);
-  fputs("gnuplot -d -\n", out);
+  fprintf(out, "folder='%s'\n%s\n", folder, command);
   fclose(out);
   assert_int_equal(chmod(path, 0700), 0);
 }
 
-/* The figure in letters; to be freed. */
-static char *InLetters(const Figure *figure)
+/* The figure as such a gnuplot gives it; to be freed. */
+static char *Drawn(const Figure *figure, const char *command)
 {
   enum { ROOM = 8192 };
   char folder[64], text[128], png[128], *paths = strdup(getenv("PATH")), *letters = calloc(1, ROOM);
@@ -256,7 +259,7 @@ static char *InLetters(const Figure *figure)
   Diag *diag;
   assert_non_null(letters);
   TestFolder(folder);
-  LetterGnuplot(folder, paths);
+  OtherGnuplot(folder, paths, command);
   setenv("PATH", folder, 1);
   snprintf(png, sizeof png, "%s/figure.png", folder);
   snprintf(text, sizeof text, "%s/text", folder);
@@ -281,7 +284,7 @@ static void test_tick_names(void **state)
   for (int k = 0; k < 2; ++k) {
     const FigureSeries series = {.style = FIGURE_LINE, .n = 2, .x = x, .y = y[k]};
     const Figure figure = {.title = "small", .x_label = "x", .n_series = 1, .series = &series};
-    char *letters = InLetters(&figure), *rest = letters, *line, name[64], last[64] = "";
+    char *letters = Drawn(&figure, LETTERS), *rest = letters, *line, name[64], last[64] = "";
     int names = 0;
     while ((line = strsep(&rest, "\n"))) {
       if (!strpbrk(line, "|+") || sscanf(line, "%63s", name) != 1 || !strpbrk(name, "0123456789")) continue;
@@ -294,6 +297,50 @@ static void test_tick_names(void **state)
   }
 }
 
+/* Along x numbers stand side by side: in a large picture as many as gnuplot chooses, in a small one fewer, two at
+ * least. What is 310 pixels wide has room for 33 letters. */
+static void test_tick_steps(void **state)
+{
+  static const struct {
+    PetscReal min, max, room, step;
+  } ticks[] = {{0, 1, 80, 0.2},
+               {0, 1.9, 80, 0.2},
+               {0, 4, 80, 0.5},
+               {0, 9, 80, 1},
+               {-0.45, 0, 80, 0.05},
+               {1233.09, 1234, 80, 0.1},
+               {1233.09, 1234, 33, 0.2},
+               {1.09e-4, 1.2e-4, 33, 5e-6},
+               {1000.11491, 1000.115, 33, 5e-5},
+               {1000.11491, 1000.115, 5, 5e-5}};
+  (void)state;
+  for (size_t k = 0; k < sizeof ticks / sizeof ticks[0]; ++k)
+    assert_float_equal(ticks_step(ticks[k].min, ticks[k].max, ticks[k].room) / ticks[k].step, 1, 1e-12);
+  assert_true(ticks_step(3, 3, 80) == 0 && ticks_step(-PETSC_MAX_REAL, PETSC_MAX_REAL, 80) == 0);
+  assert_true(ticks_step(0, 1e-310, 80) == 0 && ticks_letters(-0.45, 0) == 5);
+}
+
+/* The legend below takes the figure away from the middle of the picture: of a long label less has room, not above the
+ * picture's edge. 600 pixels, less 45 and two lines of 23, are 46 letters of 11 pixels. */
+static void test_label_above_legend(void **state)
+{
+  const PetscReal x[] = {0, 1}, level[4] = {0, 1, 0, 1}, down[] = {1, 0};
+  const FigureSeries series[] = {
+    {.name = "the force that a wall with a very long name bears along x", .style = FIGURE_LINE, .n = 2, .x = x, .y = x},
+    {.name = "another", .style = FIGURE_LINE, .n = 2, .x = x, .y = down},
+    {.style = FIGURE_LINE, .n = 4, .x = (PetscReal[]){0, 0, 1, 1}, .y = level}};
+  const Figure figure = {
+    .y_label = "the force that a wall with a very long name bears along x [kN]", .n_series = 3, .series = series};
+  char *script = Drawn(&figure, SCRIPT), *label = strstr(script, "set ylabel \"");
+  (void)state;
+  assert_non_null(strstr(script, "set key below"));
+  assert_non_null(label);
+  label += strlen("set ylabel \"");
+  const char *end = strchr(label, '"');
+  assert_true(end - label == 46 + 2 && !strncmp(end - 5, " [kN]", 5)); /* … has three bytes */
+  free(script);
+}
+
 /* A title wider than the picture stands in two lines, both of them whole. */
 static void test_long_title(void **state)
 {
@@ -303,7 +350,7 @@ static void test_long_title(void **state)
   const PetscReal x[] = {0, 1};
   const FigureSeries series = {.style = FIGURE_LINE, .n = 2, .x = x, .y = x};
   const Figure figure = {.title = title, .x_label = "x", .n_series = 1, .series = &series};
-  char *letters = InLetters(&figure);
+  char *letters = Drawn(&figure, LETTERS);
   const char *first = strstr(letters, "What the flow of all"), *second = strstr(letters, "the rate of shear");
   (void)state;
   assert_true(first && second && first < second);
@@ -828,6 +875,8 @@ static int Tests(void)
                                      cmocka_unit_test(test_body_of_revolution),
                                      cmocka_unit_test(test_histories),
                                      cmocka_unit_test(test_mistakes),
+                                     cmocka_unit_test(test_tick_steps),
+                                     cmocka_unit_test(test_label_above_legend),
                                      cmocka_unit_test(test_no_gnuplot),
                                      cmocka_unit_test(test_animation),
                                      cmocka_unit_test(test_names_and_cells),
