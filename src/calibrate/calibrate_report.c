@@ -113,7 +113,7 @@ static void tell_verdict(FILE *out, const CalibrateRun *r)
   if (r->region.inside && !calibrate_is_confirmed(r))
     fputs(
       "What the predictions allow is not confirmed, the region may lie elsewhere: more `rounds` or `points` tell "
-      "(runs that are there are used again).\n",
+      "(runs that are there are used again), or narrower ranges.\n",
       out);
 }
 
