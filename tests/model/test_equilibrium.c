@@ -165,6 +165,32 @@ static void test_beyond(void **state)
   CALL(ModelDestroy(&m));
 }
 
+/* What is bonded bears the stress as it is given: nothing is lacking, and nothing moves. */
+static void test_bonded(void **state)
+{
+  WallSpec floor = {.name = (char *)"floor", .contact = CONTACT_BONDED};
+  StepReport report;
+  Bench b;
+  (void)state;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 0);
+  bench_grid(&b, (PetscReal[]){0, -0.5, 0}, (PetscReal[]){1, 1.5, 0}, 0.25);
+  b.c.basis = (BasisSpec){.kind = "gimp"};
+  floor.shape = (Shape){.kind = SHAPE_HALF_SPACE, .normal = {0, 1, 0}};
+  b.c.n_walls = 1, b.c.walls = &floor;
+  for (int side = 0; side < 2; ++side) bench_motion(&b, 0, side, MOTION_FIXED, 1);
+  b.c.gravity[1] = -10;
+  b.c.gravity_amplitude = (Amplitude){.n = 1, .time = start, .value = whole};
+  b.body[0].has_k0 = PETSC_TRUE;
+  b.body[0].k0 = 0.5;
+  b.c.initial = (InitialSpec){.equilibrium = EQUILIBRIUM_DIRECT, .reset = PETSC_TRUE};
+  Model *m = equilibrium(&b, &report);
+  CHECK(report.outcome == STEP_ACCEPTED, "it stands");
+  CHECK(m->initial.lacked <= 1e-11, "lacked %g", (double)m->initial.lacked);
+  CHECK(m->initial.left <= 1e-11, "left %g", (double)m->initial.left);
+  CHECK_CLOSE(m->initial.moved, 0, 1e-12);
+  CALL(ModelDestroy(&m));
+}
+
 static void test_refused(void **state)
 {
   Bench b;
@@ -181,7 +207,8 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_slope),    cmocka_unit_test(test_domains), cmocka_unit_test(test_gravity_loading),
-    cmocka_unit_test(test_formulas), cmocka_unit_test(test_beyond),  cmocka_unit_test(test_refused),
+    cmocka_unit_test(test_formulas), cmocka_unit_test(test_beyond),  cmocka_unit_test(test_bonded),
+    cmocka_unit_test(test_refused),
   };
   return run_model_tests(argc, argv, tests);
 }

@@ -46,7 +46,7 @@ static ContactShare share_of_force(const Model *m)
                           .asked = asked,
                           .yields = yields,
                           .moves = m->scheme->inertia,
-                          .fades = m->method->restores_grid && m->control.wait == 0};
+                          .fades = m->method->restores_grid && m->control.wait == 0 && !m->initial.seeking};
   return (ContactShare){.inertia = PETSC_TRUE,
                         .asked = asked,
                         .flows = yields,

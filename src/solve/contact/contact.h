@@ -96,7 +96,7 @@ typedef struct {
   PetscBool flows;  /* may matter with inertia yield? Then gaps are measured by what it moves */
   PetscBool moves;  /* has matter inertia, whatever the scheme remembers? */
   PetscBool yields; /* may it at all? What it strains by is no millionth then */
-  PetscBool fades;  /* does it move through its nodes, in statics that have not failed lately? */
+  PetscBool fades;  /* does it move through its nodes, in statics that have not failed lately and whose time passes? */
   PetscReal asked;  /* share of the usual that may stay of gaps */
   PetscReal leaves; /* share of what is too deep at the start of a very short step that the next one closes */
   PetscReal mean, back, lag;
