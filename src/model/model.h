@@ -207,6 +207,7 @@ typedef struct Model {
   PetscReal start_energy;
   /* that had come in, by the start, loads, gravity and prescribed motion, at any time, J */
   PetscReal most_energy;
+  PetscReal kept_energy;  /* most that elastic bodies of statics stored when nothing acted on them any more, J */
   PetscReal least_energy; /* of strains that steps can tell from none, J */
   PetscReal open_energy;  /* that forces out of balance, as steps have left them, may have made or taken so far, J */
   Outside outside;

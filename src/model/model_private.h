@@ -298,6 +298,8 @@ PetscErrorCode UnbalancedWork(Model *model, PetscReal dt, const PetscReal *g, co
                               PetscReal *work);
 /* Collective. Points have their new state and have moved: close the step's account. */
 PetscErrorCode EnergyClose(Model *model, EnergyStep *step);
+/* unloaded.c. Collective. After it: Model.kept_energy. */
+PetscErrorCode NoteUnloaded(Model *model);
 /* Nodal pressures of the step's start as unknowns; nothing without a mixed formulation. */
 void pressure_guess(const Model *model);
 /* Collective. Leave the cells: nodes that material fills or the boundary holds become a cloud, and

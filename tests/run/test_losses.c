@@ -3,6 +3,21 @@
 #include "model/model_private.h"
 #include "run/report/losses.h"
 
+/* What LossesWarn says, to be freed. */
+static char *said_of(Model *m, const PetscReal *values)
+{
+  Diag *diag;
+  char *said = NULL;
+  size_t length = 0;
+  FILE *out = open_memstream(&said, &length);
+  CALL(DiagCreate(&diag));
+  CALL(LossesWarn(m, values, diag));
+  CALL(DiagFlush(diag, out));
+  fclose(out);
+  CALL(DiagDestroy(&diag));
+  return said;
+}
+
 /* Warnings of a block whose points count as so much larger than they are. */
 static PetscInt warnings(PetscReal larger)
 {
@@ -37,9 +52,6 @@ static void test_no_number(void **state)
   (void)state;
   for (int k = 0; k < 2; ++k) {
     Bench b;
-    Diag *diag;
-    char *said = NULL;
-    size_t length = 0;
     bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
     bench_dynamic(&b, 1, 1e-2);
     measure.has_in = k > 0;
@@ -48,22 +60,54 @@ static void test_no_number(void **state)
     b.c.measures = &measure;
     b.c.n_measures = 1;
     CALL(MeasuresStart(m));
-    CALL(DiagCreate(&diag));
-    CALL(LossesWarn(m, values, diag));
-    FILE *out = open_memstream(&said, &length);
-    CALL(DiagFlush(diag, out));
-    fclose(out);
+    char *said = said_of(m, values);
     PetscMPIInt rank;
     MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
     CHECK(rank || strstr(said, why[k]), "%s", said);
     free(said);
-    CALL(DiagDestroy(&diag));
+    CALL(ModelDestroy(&m));
+  }
+}
+
+/* A block that is pushed askew and let go, two steps each time: fem gives all back, and what gmm keeps is told, as
+ * nothing that a load does which is there at once. */
+static void test_kept(void **state)
+{
+  static const char *const method[] = {"fem", "gmm"};
+  PetscReal time[] = {0, 1, 2}, factor[] = {0, 1, 0};
+  enum { CYCLES = 5 };
+  (void)state;
+  EACH_OF (k, method) {
+    Bench b;
+    StepReport report;
+    bench_init(&b, method[k], CELL_QUADRILATERAL, 4);
+    if (k)
+      b.c.basis = (BasisSpec){.kind = "lme", .gamma = 1.8, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+    b.c.analysis.end = 2;
+    bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+    bench_traction(&b, 1, 1, "body", 5e4, -1e5, 0)->amplitude = (Amplitude){.n = 3, .time = time, .value = factor};
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    for (int step = 0; step < 2 * CYCLES; ++step) {
+      m->time = step % 2;
+      CALL(ModelStep(m, 1, &report));
+      CHECK(report.outcome == STEP_ACCEPTED, "step %d", step);
+      CHECK(step > 0 || m->kept_energy == 0, "nothing is known while it acts");
+    }
+    const PetscReal share = m->kept_energy / m->most_energy;
+    CHECK(k ? share > 0.01 : share < 1e-12, "%s kept %g", method[k], (double)share);
+    char *said = said_of(m, NULL);
+    PetscMPIInt rank;
+    MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+    CHECK(rank || !k == !strstr(said, "elastic bodies kept"), "%s", said);
+    CHECK(!strstr(said, "there at once"), "%s", said);
+    free(said);
     CALL(ModelDestroy(&m));
   }
 }
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_crowd), cmocka_unit_test(test_no_number)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_crowd), cmocka_unit_test(test_no_number),
+                                     cmocka_unit_test(test_kept)};
   return run_model_tests(argc, argv, tests);
 }

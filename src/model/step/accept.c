@@ -161,6 +161,7 @@ PetscErrorCode ConvectStep(Model *m, PetscReal dt, EnergyStep *energy, StepRepor
   m->time = time_after(m, dt);
   ++m->step;
   PetscCall(EnergyClose(m, energy));
+  PetscCall(NoteUnloaded(m));
   PetscCall(OutsideAdd(m, report));
   PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
   note_unstable(m, m->time - dt, &report->newton);

@@ -12,6 +12,8 @@
 
 /* share of the energy that came in: about what granular flows lose on usual grids */
 #define TRANSFER_ALLOWED 0.05
+/* likewise: a tenth of the strain, or a set of about 0.005 of the way */
+#define KEPT_ALLOWED 0.01
 /* times all that came in */
 #define MOTION_ALLOWED 10
 /* share of the volume: unevenness of points that have moved through many cells is 0.1 to 0.2 */
@@ -157,6 +159,46 @@ static void hint_of_clouds(const Model *m, Diag *diag)
             damps_clouds(m));
 }
 
+/* Of forces by a table: is there one when that begins? Gravity that bodies begin in balance with does no work then. */
+typedef struct {
+  const Case *c;
+  PetscBool any;
+} AtOnce;
+
+static void note_at_once(void *context, const Amplitude *table, TableUse use, const char *path)
+{
+  AtOnce *found = context;
+  (void)path;
+  if (table == &found->c->gravity_amplitude && case_starts_with_gravity(found->c)) return;
+  found->any |= use == TABLE_FORCE && amplitude_value(table, table->origin, 0) != 0;
+}
+
+/* Is a load there at once, in statics? Without a table it grows, but for the weight of walls where bodies begin with
+ * theirs. */
+static PetscBool acts_at_once(const Model *m)
+{
+  AtOnce found = {.c = m->c};
+  if (!case_is_static(&m->c->analysis)) return PETSC_FALSE;
+  case_visit_tables(m->c, note_at_once, &found);
+  for (PetscInt k = 0; k < m->c->n_walls; ++k)
+    found.any |= m->c->walls[k].has_mass && !m->c->walls[k].absent && case_starts_with_gravity(m->c);
+  return found.any;
+}
+
+/* What came in should be out again when nothing acts. */
+static PetscBool keeps(const Model *m) { return (PetscBool)(share_of_input(m, m->kept_energy) > KEPT_ALLOWED); }
+
+/* Of elastic statics whose functions are made anew where material is. */
+static const char hint_of_cycles[] =
+  "functions that are made anew in every step do not give back all that they took, and bodies that loads come to and "
+  "go from keep more each time: shorter steps lessen it, method fem gives all back (docs/guide/limits.md)";
+
+static PetscBool is_moved_anew(const Model *m)
+{
+  const PetscBool anew = (PetscBool)(m->method->restores_grid || m->method->clouds);
+  return (PetscBool)(anew && case_is_static(&m->c->analysis) && !materials_yield(m->c->n_materials, m->materials));
+}
+
 static void warn_of_transfer(const Model *m, Diag *diag)
 {
   const PetscReal taken = taken_by_transfer(m), share = share_of_input(m, taken);
@@ -171,7 +213,7 @@ static void warn_of_transfer(const Model *m, Diag *diag)
     share > 0 ? "took" : "gave", (double)(100 * PetscAbsReal(share)), (double)PetscAbsReal(taken),
     (double)m->most_energy);
   if (m->method->clouds && share < 0) hint_of_clouds(m, diag);
-  else if (!m->method->restores_grid && case_is_static(&m->c->analysis) && share > 0)
+  else if (!m->method->restores_grid && acts_at_once(m) && share > 0)
     diag_hint(diag,
               "a load that is there at once works twice what the body stores in statics, and the half of it stands "
               "here; what was found is right. Without an amplitude it grows over the steps%s",
@@ -199,10 +241,25 @@ static void warn_of_transfer(const Model *m, Diag *diag)
     diag_hint(diag,
               "points that cross lines of the grid lose it, more of them with smaller cells and steps: `basis: "
               "{gimp: {}}` (docs/guide/choose.md)");
-  else
+  else if (is_moved_anew(m) && !m->contact && m->c->n_bodies == 1) {
+    if (!keeps(m)) diag_hint(diag, "%s", hint_of_cycles); /* which that says */
+  } else
     diag_hint(diag,
-              "smaller cells where bodies meet and smaller steps lessen it; measure {energy: transfer} shows when "
-              "(docs/theory.md, Energy)");
+              "smaller cells%s and smaller steps lessen it; measure {energy: transfer} shows when (docs/theory.md, "
+              "Energy)",
+              m->contact || m->c->n_bodies > 1 ? " where bodies meet" : "");
+}
+
+/* Elastic bodies give all back; those that have snapped through to another shape do not, and are few. */
+static void warn_of_kept(const Model *m, Diag *diag)
+{
+  if (!keeps(m)) return;
+  diag_warning(diag, NULL,
+               "elastic bodies kept %.2g %% of the energy that came in (%.4g of %.4g J) when nothing acted on them any "
+               "more",
+               (double)(100 * share_of_input(m, m->kept_energy)), (double)m->kept_energy, (double)m->most_energy);
+  if (is_moved_anew(m)) diag_hint(diag, "%s", hint_of_cycles);
+  else diag_hint(diag, "bodies that have snapped through to another shape do; others do not");
 }
 
 /* Where steps leave open more than came in the transfer means nothing, and motion alone tells what was made. */
@@ -501,6 +558,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
                  "points that left the grid were kept on its boundary %.0f times, at most %.0f of %.4g kg in a step",
                  (double)o->held, (double)o->held_most, (double)o->held_most_mass);
   warn_of_transfer(m, diag);
+  warn_of_kept(m, diag);
   PetscCall(WarnOfRunaway(m, diag));
   PetscCall(WarnOfGain(m, diag));
   PetscCall(WarnOfCrowd(m, diag));
