@@ -12,6 +12,10 @@
 #include "model/model.h"
 #include "model/stage/stage.h"
 
+/* Of the time at which a stage begins, what its steps may be: rounded by a few millionths, or ten-thousandths. */
+#define TOLD_WELL 1e-9
+#define TOLD_AT_ALL 1e-11
+
 static void destroy_document(void *document)
 {
   YamlDocument *d = document;
@@ -403,6 +407,29 @@ static void check_windows(const Case *whole, PetscInt k, Diag *diag)
   diag_of_stage(diag, -1, NULL);
 }
 
+/* The clock of a run goes on through its stages, and has 16 digits: after a stage of 1e9 s a step of 1e-4 s is a
+ * thousandth off. */
+static void check_clock(const Case *whole, PetscInt k, Diag *diag)
+{
+  const PetscReal step = whole->stage_case[k]->analysis.step;
+  PetscReal begins = 0;
+  PetscInt longest = 0;
+  for (PetscInt j = 0; j < k; ++j) {
+    begins += whole->stage_case[j]->analysis.end;
+    if (whole->stage_case[j]->analysis.end > whole->stage_case[longest]->analysis.end) longest = j;
+  }
+  if (step >= TOLD_WELL * begins) return;
+  diag_of_stage(diag, k, whole->stages[k].name);
+  (step < TOLD_AT_ALL * begins ? diag_error : diag_warning)(
+    diag, "analysis.step", "steps of %g s after %g s: the clock's 16 digits tell times there no better than %.1g s",
+    (double)step, (double)begins, (double)(PETSC_MACHINE_EPSILON * begins));
+  diag_hint(diag,
+            "a smaller `end` of stage '%s' (of statics without rates it is no time that passes), or a case of its own "
+            "with `initial: {run: ...}`, whose clock begins with 0",
+            whole->stages[longest].name);
+  diag_of_stage(diag, -1, NULL);
+}
+
 /* What a stage reads, the run reads. */
 static PetscErrorCode TakeFiles(const Case *stage, Case *whole)
 {
@@ -443,6 +470,7 @@ static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag 
   for (PetscInt k = 0; k < whole->n_stages; ++k) {
     check_units(whole, k, diag);
     check_windows(whole, k, diag);
+    check_clock(whole, k, diag);
     stage_advise_repeated(whole, k, diag);
   }
   for (PetscInt k = whole->n_stages - 1; k > 0; --k)

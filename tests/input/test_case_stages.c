@@ -103,10 +103,35 @@ static void Names(void **state)
   }
 }
 
+/* The clock goes on through stages: steps that it cannot tell any more are refused, those that it rounds are told. */
+static void Clock(void **state)
+{
+  static const struct {
+    const char *step, *says;
+    PetscBool taken;
+  } steps[] = {
+    {"1e-3", NULL, PETSC_TRUE}, {"1e-4", "warning: steps of", PETSC_TRUE}, {"1e-6", "error: steps of", PETSC_FALSE}};
+  char text[4000], *said;
+  (void)state;
+  for (size_t i = 0; i < sizeof steps / sizeof *steps; ++i) {
+    snprintf(text, sizeof text,
+             PLAIN
+             "stages:\n  - {name: one, analysis: {end: 9e5}}\n"
+             "  - {name: two, analysis: {type: dynamic, end: 0.2, step: %s}}\n",
+             steps[i].step);
+    Case *c = read_text(text, &said);
+    const char *told = strstr(said, steps[i].says ? steps[i].says : "clock");
+    if ((c != NULL) != steps[i].taken || (told != NULL) != (steps[i].says != NULL))
+      fail_msg("%s: %s", steps[i].step, said);
+    free(said);
+    if (c) assert_int_equal(CaseDestroy(&c), 0);
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(Loads), cmocka_unit_test(Ages), cmocka_unit_test(Entries),
-                                     cmocka_unit_test(Names)};
+                                     cmocka_unit_test(Names), cmocka_unit_test(Clock)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;
