@@ -73,8 +73,8 @@ static void compare(const ContactLaw *law, const Wall *w, const ContactForce *mu
   ++seen[state];
 }
 
-/* Along curved walls, too, where the plane of the shear turns. Every fifth contact is about to open: there adhesion goes
- * with the pressure. */
+/* Along curved walls, too, where the plane of the shear turns. Every fifth contact is about to open: there adhesion
+ * goes with the pressure. */
 static void test_tangent(void **state)
 {
   PetscInt seen[3] = {0, 0, 0};

@@ -253,8 +253,8 @@ static PetscReal travel_of(const Contact *s, const ContactPoint *c, const NodalS
   return PetscMax(counts_of(s, c, own), counts_of(s, c, c->swept));
 }
 
-/* Newmark's rule remembers what small gaps take, and shakes what rests on a bonded body, which may slide. What is bonded
- * alone swings for ever, and such gaps would add to its energy in each step, or take of it. */
+/* Newmark's rule remembers what small gaps take, and shakes what rests on a bonded body, which may slide. What is
+ * bonded alone swings for ever, and such gaps would add to its energy in each step, or take of it. */
 static PetscBool is_remembered(const Contact *s, const ContactPoint *c)
 {
   return (PetscBool)(s->share.moves && s->share.inertia && c->law.kind == CONTACT_BONDED);
@@ -343,8 +343,8 @@ static PetscErrorCode LookAt(const Contact *s, const NodalScene *scene, PetscInt
   PetscFunctionReturn(0);
 }
 
-/* What may stay of gaps, or of slips, which `times` as much may. A gap that is taken away while the pressure is high, and
- * let be while it is low, gives energy to what swings on a wall: where nothing slides it is a share of what swings. */
+/* What may stay of gaps, or of slips, which `times` as much may. A gap that is taken away while the pressure is high,
+ * and let be while it is low, gives energy to what swings on a wall: where nothing slides it is a share of what swings. */
 static PetscReal allowed(const Contact *s, PetscInt change, const PetscReal most[OF_ALL], PetscReal times)
 {
   const PetscReal closed = closed_by(s, change, most[OF_PRESSED]), asked = s->share.asked;

@@ -8,8 +8,8 @@
 #define LARGE 0.5   /* of the points: with so many larger than their cells nodes have too few, in balance or not */
 
 /* What may be out of balance: limit loads are too low by 1, 3 to 7, 8 to 12 and 10 to 18 % with 0.07, 0.10, 0.17 and
- * 0.26 of it, linear functions; displacements too large by 2, 3, 6 and 12 % with 0.08, 0.12, 0.16 and 0.17, gimp. In dynamics points cross
- * cells anyway. */
+ * 0.26 of it, linear functions; displacements too large by 2, 3, 6 and 12 % with 0.08, 0.12, 0.16 and 0.17, gimp. In
+ * dynamics points cross cells anyway. */
 #define MOST 0.08
 #define MOST_IN_DYNAMICS 0.3
 
