@@ -19,7 +19,7 @@ NodalScene nodal_scene(const Model *m, PetscReal t, const PetscReal *du)
     .whole = 1 / time_solved(m->scheme),
     .end = m->time + (t - m->time) / time_solved(m->scheme),
     .first = (PetscBool)(m->step == 0 && m->initial.parts == 0),
-    .moves = (PetscBool)(m->scheme->inertia && m->scheme != &time_scheme_explicit),
+    .moves = m->scheme->inertia,
     .passes = (PetscBool)(m->method->restores_grid || m->method->clouds),
     .materials = m->materials,
     .bends = m->space->basis->bends ? extension_bends : NULL,

@@ -331,12 +331,35 @@ static void test_laps(void **state)
   }
 }
 
+/* A wall that comes where the block is stands there and pushes nothing, until something presses. */
+static void test_comes(void **state)
+{
+  (void)state;
+  EACH_VARIANT (i, 4) {
+    Bench b;
+    WallSpec wall;
+    Energies e;
+    const int up = blocks[i].cell == CELL_HEXAHEDRON ? 2 : 1;
+    standing(&b, blocks + i, 0, &wall);
+    b.c.gravity[up] = 0;
+    wall.shape.point[up] += 0.02;
+    wall.from = 0.01;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    for (int s = 0; s < 6; ++s) model_step(m, PETSC_MAX_REAL);
+    CALL(ModelEnergies(m, &e));
+    CHECK(measure(m, "wall_force", NULL, up) == 0, "it pushes with %g N", (double)measure(m, "wall_force", NULL, up));
+    CHECK(e.kinetic + e.elastic < 1e-20, "it has made %g J", (double)(e.kinetic + e.elastic));
+    CALL(ModelDestroy(&m));
+  }
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_slides),   cmocka_unit_test(test_rests), cmocka_unit_test(test_lifts),
-    cmocka_unit_test(test_vanishes), cmocka_unit_test(test_hangs), cmocka_unit_test(test_ranks),
-    cmocka_unit_test(test_resumed),  cmocka_unit_test(test_laps),  cmocka_unit_test(test_pressed)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_slides),  cmocka_unit_test(test_rests),
+                                     cmocka_unit_test(test_lifts),   cmocka_unit_test(test_vanishes),
+                                     cmocka_unit_test(test_hangs),   cmocka_unit_test(test_ranks),
+                                     cmocka_unit_test(test_resumed), cmocka_unit_test(test_laps),
+                                     cmocka_unit_test(test_pressed), cmocka_unit_test(test_comes)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

@@ -172,4 +172,27 @@ END
 expect "a load that varies" 0 "$talus" run pushed.yaml --out pushed --force --quiet
 awk -F, 'END { exit !(($4 / $3 - 1) ^ 2 < 1e-6) }' pushed/history.csv || fail "$name: $(tail -n 1 pushed/history.csv)"
 
+# Walls that come where a body is, by `from` and with a stage, stand there: they pushed it out, and made 750 J of nothing.
+cat >comes.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: explicit, end: 0.02, step: 0.002}
+grid: {box: {min: [0, 0], max: [1, 1.03]}, counts: [5, 5]}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 2000, young: 1e6, poisson: 0.3}}
+boundary: [{name: base, on: {y: 0}, fix: [y]}]
+walls: [{name: lid, shape: {half-space: {point: [0, 0.995], normal: [0, -1]}}, from: 0.01}]
+measures: {energy: {energy: mechanical}, push: {wall_force: y, of: {wall: lid}}}
+output: {history: {steps: 1}}
+stages:
+  - name: lid
+  - name: side
+    analysis: {end: 0.02}
+    walls:
+      - {name: lid, shape: {half-space: {point: [0, 0.995], normal: [0, -1]}}}
+      - {name: side, shape: {half-space: {point: [0.98, 0], normal: [-1, 0]}}}
+END
+expect "walls that come" 0 "$talus" run comes.yaml --out comes --force --quiet
+awk -F, 'NR > 1 && !($4 * $4 < 1e-20 && $5 * $5 < 1e-20) { exit 1 } END { exit NR < 20 }' comes/history.csv || fail "$name: $(tail -n 1 comes/history.csv)"
+
 finish

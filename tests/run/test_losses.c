@@ -105,9 +105,33 @@ static void test_kept(void **state)
   }
 }
 
+/* What the transfer makes where nothing is or comes in is no share of anything, and told all the same. */
+static void test_made(void **state)
+{
+  (void)state;
+  for (int made = 0; made < 2; ++made) {
+    Bench b;
+    Diag *diag;
+    bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+    bench_dynamic(&b, 1, 1e-2);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    CHECK(m->most_energy == 0, "%g J were there", (double)m->most_energy);
+    m->transfer_energy = -1.0 * made;
+    CALL(DiagCreate(&diag));
+    CALL(LossesWarn(m, NULL, diag));
+    assert_int_equal(diag_warnings(diag), made);
+    CALL(DiagDestroy(&diag));
+    CALL(ModelDestroy(&m));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_crowd), cmocka_unit_test(test_no_number),
+<<<<<<< HEAD
                                      cmocka_unit_test(test_kept)};
+=======
+                                     cmocka_unit_test(test_made)};
+>>>>>>> bdc08b37 (Let walls that come in explicit dynamics push nothing they find)
   return run_model_tests(argc, argv, tests);
 }

@@ -199,11 +199,76 @@ static PetscBool is_moved_anew(const Model *m)
   return (PetscBool)(anew && case_is_static(&m->c->analysis) && !materials_yield(m->c->n_materials, m->materials));
 }
 
+/* Of what was at rest and nothing acts on: no share of that tells. */
+static void warn_of_made(const Model *m, PetscReal taken, Diag *diag)
+{
+  if (m->most_energy > 0 || !(-taken > energy_unresolved(m))) return;
+  diag_warning(diag, NULL,
+               "the transfer between points and grid gave %.4g J, and no energy had come in: the run made it",
+               (double)-taken);
+  diag_hint(diag, "measure {energy: transfer} shows when (docs/theory.md, Energy)");
+}
+
+static void hint_of_statics_at_once(const Model *m, Diag *diag)
+{
+  diag_hint(diag,
+            "a load that is there at once works twice what the body stores in statics, and the half of it stands "
+            "here; what was found is right. Without an amplitude it grows over the steps%s",
+            m->contact ? ". What contact that opens, closes or slides has in it, shorter steps lessen" : "");
+}
+
+/* Of the transfer that stands for points and nodes of implicit dynamics; PETSC_FALSE: none. */
+static PetscBool hint_of_scheme(const Model *m, PetscReal share, Diag *diag)
+{
+  const PetscBool implicit = (PetscBool)(m->method->restores_grid && m->c->analysis.type == ANALYSIS_DYNAMIC);
+  if (!implicit || m->space->transfer != transfers[0]) return PETSC_FALSE;
+  if (!materials_yield(m->c->n_materials, m->materials))
+    diag_hint(
+      diag,
+      m->formulation->pressure
+        ? "elastic bodies keep it with `analysis: {transfer: consistent}` (docs/theory.md, Energy)"
+        : "elastic bodies keep it with `analysis: {transfer: consistent, scheme: midpoint}` (docs/theory.md, Energy)");
+  else if (share < 0)
+    diag_hint(diag,
+              "steps much shorter than a wave takes through a cell make it: longer ones, or `analysis: {transfer: "
+              "consistent}` (docs/guide/limits.md)");
+  return (PetscBool)(share < 0 || !materials_yield(m->c->n_materials, m->materials));
+}
+
+/* PETSC_FALSE: none. */
+static PetscBool hint_of_contact(const Model *m, Diag *diag)
+{
+  const PetscBool sprung = (PetscBool)(m->c->analysis.type == ANALYSIS_EXPLICIT);
+  if (!m->contact || (!sprung && m->method->restores_grid)) return PETSC_FALSE;
+  diag_hint(diag, "%s",
+            sprung
+              ? "springs of what touches store a part of it, and their dashpots take what swings until it rests; "
+                "smaller cells lessen it; measure {energy: transfer} shows when (docs/theory.md, section 34)"
+              : "steps in which contact opens, closes or begins to slide count its work by the mean of their ends: "
+                "shorter ones lessen it; measure {energy: transfer} shows when (docs/theory.md, Energy)");
+  return PETSC_TRUE;
+}
+
+static void hint_of_grid(const Model *m, Diag *diag)
+{
+  const PetscBool meet = (PetscBool)(m->contact || m->c->n_bodies > 1);
+  if (loses_at_lines(m))
+    diag_hint(diag,
+              "points that cross lines of the grid lose it, more of them with smaller cells and steps: `basis: "
+              "{gimp: {}}` (docs/guide/choose.md)");
+  else if (!is_moved_anew(m) || meet)
+    diag_hint(diag,
+              "smaller cells%s and smaller steps lessen it; measure {energy: transfer} shows when (docs/theory.md, "
+              "Energy)",
+              meet ? " where bodies meet" : "");
+  else if (!keeps(m)) diag_hint(diag, "%s", hint_of_cycles); /* which that says */
+}
+
 static void warn_of_transfer(const Model *m, Diag *diag)
 {
   const PetscReal taken = taken_by_transfer(m), share = share_of_input(m, taken);
-  const PetscBool implicit = (PetscBool)(m->method->restores_grid && m->c->analysis.type == ANALYSIS_DYNAMIC);
   if (!m->method->restores_grid && m->c->staged && case_is_static(&m->c->analysis)) return; /* of what went away */
+  warn_of_made(m, taken, diag);
   if (PetscAbsReal(share) <= TRANSFER_ALLOWED) return;
   diag_warning(
     diag, NULL,
@@ -213,41 +278,8 @@ static void warn_of_transfer(const Model *m, Diag *diag)
     share > 0 ? "took" : "gave", (double)(100 * PetscAbsReal(share)), (double)PetscAbsReal(taken),
     (double)m->most_energy);
   if (m->method->clouds && share < 0) hint_of_clouds(m, diag);
-  else if (!m->method->restores_grid && acts_at_once(m) && share > 0)
-    diag_hint(diag,
-              "a load that is there at once works twice what the body stores in statics, and the half of it stands "
-              "here; what was found is right. Without an amplitude it grows over the steps%s",
-              m->contact ? ". What contact that opens, closes or slides has in it, shorter steps lessen" : "");
-  else if (implicit && m->space->transfer == transfers[0] && !materials_yield(m->c->n_materials, m->materials))
-    diag_hint(
-      diag,
-      m->formulation->pressure
-        ? "elastic bodies keep it with `analysis: {transfer: consistent}` (docs/theory.md, Energy)"
-        : "elastic bodies keep it with `analysis: {transfer: consistent, scheme: midpoint}` (docs/theory.md, Energy)");
-  else if (implicit && m->space->transfer == transfers[0] && share < 0)
-    diag_hint(diag,
-              "steps much shorter than a wave takes through a cell make it: longer ones, or `analysis: {transfer: "
-              "consistent}` (docs/guide/limits.md)");
-  else if (m->contact && m->c->analysis.type == ANALYSIS_EXPLICIT)
-    diag_hint(diag,
-              "springs of what touches store a part of it, and their dashpots take what swings until it rests; smaller "
-              "cells lessen it; measure {energy: transfer} shows when (docs/theory.md, section 34)");
-  else if (m->contact && !m->method->restores_grid)
-    diag_hint(
-      diag,
-      "steps in which contact opens, closes or begins to slide count its work by the mean of their ends: shorter "
-      "ones lessen it; measure {energy: transfer} shows when (docs/theory.md, Energy)");
-  else if (loses_at_lines(m))
-    diag_hint(diag,
-              "points that cross lines of the grid lose it, more of them with smaller cells and steps: `basis: "
-              "{gimp: {}}` (docs/guide/choose.md)");
-  else if (is_moved_anew(m) && !m->contact && m->c->n_bodies == 1) {
-    if (!keeps(m)) diag_hint(diag, "%s", hint_of_cycles); /* which that says */
-  } else
-    diag_hint(diag,
-              "smaller cells%s and smaller steps lessen it; measure {energy: transfer} shows when (docs/theory.md, "
-              "Energy)",
-              m->contact || m->c->n_bodies > 1 ? " where bodies meet" : "");
+  else if (!m->method->restores_grid && acts_at_once(m) && share > 0) hint_of_statics_at_once(m, diag);
+  else if (!hint_of_scheme(m, share, diag) && !hint_of_contact(m, diag)) hint_of_grid(m, diag);
 }
 
 /* Elastic bodies give all back; those that have snapped through to another shape do not, and are few. */

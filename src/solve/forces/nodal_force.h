@@ -31,7 +31,7 @@ typedef struct {
   /* increments of the whole step over du, and its end, s: of schemes that balance in the middle */
   PetscReal whole, end;
   PetscBool first;  /* is it the first step of all? */
-  PetscBool moves;  /* does matter resist by inertia, in implicit steps? */
+  PetscBool moves;  /* does matter resist by inertia? */
   PetscBool passes; /* does matter go through cells, or points of a cloud, that stay? */
   const Material *materials;
   /* Basis.bends of point p, on its n nodes in the support, n x dim; PETSC_FALSE: they do not. NULL: nor do others. */
