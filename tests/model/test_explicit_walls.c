@@ -331,6 +331,77 @@ static void test_laps(void **state)
   }
 }
 
+/* A wall without an inside that strikes a block like one that has one: a line, or a disk in space. */
+static void thin_one(const Block *r, PetscReal *ends, WallSpec *wall)
+{
+  const PetscReal *point = wall->shape.point, *normal = wall->shape.normal;
+  if (r->cell == CELL_HEXAHEDRON) {
+    wall->shape = (Shape){.kind = SHAPE_DISK,
+                          .centre = {point[0] + 1, point[1] + 1, point[2]},
+                          .normal = {normal[0], normal[1], normal[2]},
+                          .radii = {0, 4}};
+    return;
+  }
+  ends[0] = -5, ends[2] = 10;
+  ends[1] = ends[3] = point[1];
+  wall->shape = (Shape){.kind = SHAPE_LINE, .n_vertices = 2, .vertices = ends};
+}
+
+/* The momentum that a wall gives a free block which it strikes with 0.7 of the speed of waves, by springs of such a
+ * stiffness, and what of the block has gone through it, kg. */
+static PetscReal struck(const Block *r, PetscBool thin, PetscReal stiffness, PetscReal *through, PetscReal *deepest)
+{
+  Bench b;
+  WallSpec wall;
+  PetscReal ends[4];
+  const int up = r->cell == CELL_HEXAHEDRON ? 2 : 1;
+  MotionSpec come = {.kind = MOTION_VELOCITY, .component = {1, 1, 1}};
+  standing(&b, r, 0, &wall);
+  b.c.gravity[up] = 0;
+  if (thin) thin_one(r, ends, &wall);
+  const PetscReal c = PetscSqrtReal(b.constants[0].value / 1000), end = (stiffness < 1 ? 0.8 : 0.45) / (0.7 * c);
+  come.value[up] = 0.7 * c;
+  b.c.analysis.contact = stiffness;
+  wall.n_motions = 1;
+  wall.motions = &come;
+  b.c.analysis.step = b.c.analysis.largest = end / 8;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD), *again = bench_model(&b, PETSC_COMM_WORLD);
+  for (int s = 0; s < 8; ++s) {
+    model_step(m, PETSC_MAX_REAL);
+    *deepest = PetscMax(*deepest, measure(m, "contact", "penetration", 0));
+  }
+  const PetscReal given = model_sum(m, "momentum", up);
+  *through = m->contact->crossed[0];
+  model_take_up(m, again);
+  CHECK(again->contact->crossed[0] == *through, "a resumed run forgets what has gone through");
+  CALL(ModelDestroy(&m));
+  CALL(ModelDestroy(&again));
+  return given;
+}
+
+/* Points sink in by more than they are thick (a quarter of a cell), and stand beyond a thin wall: it pushes them back,
+ * as a solid one does. What such walls cannot hold at all is told. */
+static void test_thin(void **state)
+{
+  static const Block met[] = {{"gimp", CELL_QUADRILATERAL, &kinematics_plane_strain, 0.2},
+                              {"cell", CELL_TRIANGLE, &kinematics_plane_strain, 0.2},
+                              {"cell", CELL_HEXAHEDRON, &kinematics_3d, 0.2}};
+  (void)state;
+  EACH_OF (i, met) {
+    PetscReal through[2], deepest[2] = {0, 0};
+    const PetscReal solid = struck(met + i, PETSC_FALSE, 1, through, deepest);
+    const PetscReal thin = struck(met + i, PETSC_TRUE, 1, through + 1, deepest + 1);
+    CHECK(deepest[0] > 0.25 / 4, "%s: only %g m deep", met[i].basis, (double)deepest[0]);
+    PetscPrintf(PETSC_COMM_WORLD, "%s %g: thin %.12g, solid %.12g kg m/s\n", met[i].basis, (double)deepest[0],
+                (double)thin, (double)solid);
+    CHECK_CLOSE(thin, solid, 1e-9 * solid);
+    CHECK(through[0] == 0 && through[1] == 0, "%g kg are through", (double)through[1]);
+  }
+  PetscReal through, deepest = 0;
+  struck(met, PETSC_TRUE, 0.01, &through, &deepest);
+  CHECK(through > 10 && through <= 500, "%g of 500 kg are said to be through", (double)through);
+}
+
 /* A wall that comes where the block is stands there and pushes nothing, until something presses. */
 static void test_comes(void **state)
 {
@@ -355,11 +426,11 @@ static void test_comes(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_slides),  cmocka_unit_test(test_rests),
-                                     cmocka_unit_test(test_lifts),   cmocka_unit_test(test_vanishes),
-                                     cmocka_unit_test(test_hangs),   cmocka_unit_test(test_ranks),
-                                     cmocka_unit_test(test_resumed), cmocka_unit_test(test_laps),
-                                     cmocka_unit_test(test_pressed), cmocka_unit_test(test_comes)};
+  const struct CMUnitTest tests[] = {
+    cmocka_unit_test(test_slides),   cmocka_unit_test(test_rests), cmocka_unit_test(test_lifts),
+    cmocka_unit_test(test_vanishes), cmocka_unit_test(test_hangs), cmocka_unit_test(test_ranks),
+    cmocka_unit_test(test_resumed),  cmocka_unit_test(test_laps),  cmocka_unit_test(test_pressed),
+    cmocka_unit_test(test_thin),     cmocka_unit_test(test_comes)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

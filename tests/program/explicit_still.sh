@@ -195,4 +195,20 @@ END
 expect "walls that come" 0 "$talus" run comes.yaml --out comes --force --quiet
 awk -F, 'NR > 1 && !($4 * $4 < 1e-20 && $5 * $5 < 1e-20) { exit 1 } END { exit NR < 20 }' comes/history.csv || fail "$name: $(tail -n 1 comes/history.csv)"
 
+# A blade without an inside that is too fast for its springs says what has gone through it; where it holds there is no word.
+cat >blade.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: explicit, end: 0.03, step: 0.002}
+grid: {box: {min: [-0.4, -0.5], max: [4, 1]}, size: 0.1}
+bodies: [{name: b, shape: {box: {min: [0.05, 0], max: [1, 0.4]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1600, young: 1e6, poisson: 0}}
+walls: [{name: blade, shape: {line: [[0, -0.4], [0, 0.8]]}, motion: [{velocity: {x: 50}}]}]
+measures: {momentum: {momentum: x}}
+END
+expect "a blade too fast" 0 "$talus" run blade.yaml --out blade --force --quiet
+says err.txt "kg of material have gone through wall 'blade', which is open" "contact_stiffness: 10"
+expect "a blade" 0 "$talus" run blade.yaml --out blade --force --quiet --set 'walls[0].motion[0].velocity.x=4'
+lacks err.txt "gone through"
+
 finish

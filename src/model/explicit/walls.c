@@ -185,6 +185,14 @@ static void keep(const Model *m, Explicit *e, const ContactPoint *c, const Petsc
   }
 }
 
+/* Of an open wall: what sinks in further than it is thick has come from where it came. */
+static void keep_side(const ContactPoint *c, PetscInt dim, PetscReal towards, PetscReal *kept)
+{
+  if (!c->side) return;
+  kept[KEPT_SIDE(dim)] = c->side;
+  kept[KEPT_DISTANCE(dim)] = c->open - c->behind + c->reach + towards;
+}
+
 /* What is open keeps its slip, too: when it closes it has been sliding. */
 void walls_follow(Model *m, Explicit *e)
 {
@@ -203,6 +211,7 @@ void walls_follow(Model *m, Explicit *e)
     keep(m, e, c, move, kept + KEPT_FORCE);
     kept[KEPT_STAYS(m->dim)] = 1;
     kept[KEPT_PASSED(m->dim)] = c->behind;
+    keep_side(c, m->dim, vector_dot(move, c->normal) - lead, kept);
     contact_keep_normal(kept, m->dim, s->sides, c->normal);
   }
   heavy_go(m);
@@ -226,6 +235,16 @@ static PetscErrorCode TakeRates(Model *m)
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, now, (PetscMPIInt)numbers, MPIU_REAL, MPI_SUM, m->comm));
   for (PetscInt k = 0; k < s->n_partners; ++k) s->wall[k].rate = now[k];
   PetscCall(PetscFree(now));
+  PetscFunctionReturn(0);
+}
+
+/* What has gone through open walls. */
+static PetscErrorCode AddCrossed(Contact *s, MPI_Comm comm)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, s->crosses, (PetscMPIInt)s->n_partners, MPIU_REAL, MPI_SUM, comm));
+  for (PetscInt k = 0; k < s->n_partners; ++k) s->crossed[k] += s->crosses[k];
+  PetscCall(PetscArrayzero(s->crosses, s->n_partners));
   PetscFunctionReturn(0);
 }
 
@@ -256,6 +275,7 @@ PetscErrorCode WallsAccount(Model *m, Explicit *e)
     s->wall[k].area = area[k];
     s->wall[k].deepest = deepest[k];
   }
+  PetscCall(AddCrossed(s, m->comm));
   PetscCall(TakeRates(m));
   PetscCall(PetscFree2(area, deepest));
   PetscFunctionReturn(0);

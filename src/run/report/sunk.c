@@ -2,6 +2,7 @@
 #include "run/report/sunk.h"
 
 #define SUNK_ALLOWED 0.01 /* of a cell, where the run ends: by so much of a cell too much does the body give way */
+#define STIFFER 10        /* springs that hold what was ten times as fast as what these hold */
 
 static void warn_of_partner(const Case *c, PetscInt k, PetscReal deep, PetscBool goes_on, Diag *diag)
 {
@@ -24,6 +25,23 @@ static void warn_of_partner(const Case *c, PetscInt k, PetscReal deep, PetscBool
     (double)(case_courant(&c->analysis) / case_courant(&stiffer)));
 }
 
+static void warn_of_crossed(const Model *m, PetscInt k, Diag *diag)
+{
+  AnalysisSpec stiffer = m->c->analysis;
+  char path[32];
+  stiffer.contact = PetscMin(100, PetscCeilReal(STIFFER * stiffer.contact));
+  snprintf(path, sizeof path, "walls[%d]", (int)k);
+  diag_warning(diag, path,
+               "%.3g kg of material have gone through wall '%s', which is open: it gave way there by more than a cell, "
+               "and its forces are too small",
+               (double)m->contact->crossed[k], m->c->walls[k].name);
+  diag_hint(
+    diag,
+    "`analysis: {contact_stiffness: %g}` gives way by less, in %.1f times as many substeps; nothing goes through "
+    "a closed shape (a box, a polygon) two cells thick, or with `type: dynamic` (docs/theory.md, section 34)",
+    (double)stiffer.contact, (double)(case_courant(&m->c->analysis) / case_courant(&stiffer)));
+}
+
 void warn_of_sunk(const Model *m, PetscBool goes_on, Diag *diag)
 {
   const Contact *s = m->contact;
@@ -31,5 +49,6 @@ void warn_of_sunk(const Model *m, PetscBool goes_on, Diag *diag)
   for (PetscInt k = 0; s && k < s->n_partners; ++k) {
     const PetscReal deep = s->wall[k].deepest / m->grid->smallest;
     if (deep > SUNK_ALLOWED) warn_of_partner(m->c, k, deep, goes_on, diag);
+    if (s->crossed[k] > 0) warn_of_crossed(m, k, diag);
   }
 }

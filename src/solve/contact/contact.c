@@ -21,6 +21,7 @@ PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **
   PetscCall(RigidCreate(c, walls, diag, &(*contact)->n_rigid, &(*contact)->rigid));
   PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->wall));
   PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->impulse));
+  PetscCall(PetscCalloc2((*contact)->n_partners, &(*contact)->crosses, (*contact)->n_partners, &(*contact)->crossed));
   PetscCall(PetscMalloc1((*contact)->n_partners * c->n_bodies, &(*contact)->divisor));
   for (PetscInt i = 0; i < (*contact)->n_partners * c->n_bodies; ++i) (*contact)->divisor[i] = 1;
   (*contact)->share = (ContactShare){.mean = 1, .asked = 1};
@@ -44,6 +45,7 @@ PetscErrorCode ContactDestroy(Contact **contact)
   PetscCall(PetscFree(s->wall));
   PetscCall(PetscFree(s->rigid));
   PetscCall(PetscFree(s->impulse));
+  PetscCall(PetscFree2(s->crosses, s->crossed));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(0);
 }
@@ -218,6 +220,8 @@ static PetscErrorCode ToTables(const void *data, const NodalScene *scene, Tables
   PetscCall(TablesAdd(tables, "walls", PETSC_TRUE, s->n_partners, &table));
   PetscCall(TableAdd(table, "state", NULL, COLUMN_REAL, WALL_NUMBERS, NULL, &column));
   PetscCall(PetscMemcpy(column->data, s->wall, (size_t)s->n_partners * sizeof *s->wall));
+  PetscCall(TableAdd(table, "crossed", NULL, COLUMN_REAL, 1, NULL, &column));
+  PetscCall(PetscArraycpy((PetscReal *)column->data, s->crossed, s->n_partners));
   if (!s->n_rigid) PetscFunctionReturn(0);
   PetscCall(TablesAdd(tables, "rigid_walls", PETSC_TRUE, s->n_rigid, &table));
   PetscCall(TableAdd(table, "state", NULL, COLUMN_REAL, RIGID_NUMBERS, NULL, &column));
@@ -262,6 +266,9 @@ static PetscErrorCode FromTables(void *data, const NodalScene *scene, const Tabl
   const PetscReal *state = table_data(table, "state", COLUMN_REAL, WALL_NUMBERS, reason);
   if (state && table->rows != s->n_partners) snprintf(reason, 256, "walls are others");
   if (state && !reason[0]) PetscCall(PetscMemcpy(s->wall, state, (size_t)s->n_partners * sizeof *s->wall));
+  const PetscReal *crossed =
+    !reason[0] && table_has(table, "crossed") ? table_data(table, "crossed", COLUMN_REAL, 1, reason) : NULL;
+  if (crossed) PetscCall(PetscArraycpy(s->crossed, crossed, s->n_partners));
   if (state && !reason[0]) rigid_from_tables(s, tables, reason);
   PetscFunctionReturn(0);
 }

@@ -133,6 +133,9 @@ typedef struct Contact {
   WallState *wall;
   /* of this rank and step, of each wall: momentum that setting what is in contact to its velocity took */
   ContactSum *impulse;
+  /* of each wall, kg: material that was pressed against one side of an open one and has gone to the other; of this rank
+   * and step, and of all so far */
+  PetscReal *crosses, *crossed;
   PetscReal driven; /* work of these where walls move as they are told, J */
 } Contact;
 
@@ -180,6 +183,11 @@ void contact_take_back(Points *points, PetscInt p, const PetscReal n[3], PetscRe
 void contact_let_reach(Points *points, PetscInt p, const PetscReal n[3], PetscReal reach);
 /* What the carrier kept of its contact with a partner. */
 void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, const PetscReal normal[3]);
+/* contact_side.c. The side of wall k on which point p is, 1 or -1: where it came from, as long as it is where the last
+ * substep sent it; 0: see wall_side. Then, of what had sunk in: it sees n places of the wall from `side`; has it left
+ * the side that it came from, through the wall? */
+int contact_side(const Contact *contact, const NodalScene *scene, PetscInt p, PetscInt k);
+void contact_note_crossing(Contact *contact, const NodalScene *scene, PetscInt p, PetscInt k, int side, PetscInt n);
 /* contact_corner.c. Which slots the sides of wall k before point p have of what p remembers, and what these remember of
  * them: of new ones nothing. */
 void contact_find_slots(const Contact *contact, const Points *points, PetscInt p, PetscInt k, PetscInt n,

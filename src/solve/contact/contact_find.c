@@ -317,8 +317,9 @@ static PetscErrorCode MeetPoint(Contact *s, const NodalScene *scene, PetscInt g,
 
   PetscFunctionBeginUser;
   if (!contact_meets_body(scene->c, k, points->body[p])) PetscFunctionReturn(0);
-  const int side = wall_side(s->walls, k, scene->t, x);
+  const int side = contact_side(s, scene, p, k);
   const PetscInt n = wall_sides(s->walls, k, scene->t, x, s->near + contact_farthest(points, p), side, place);
+  contact_note_crossing(s, scene, p, k, side, n);
   contact_find_slots(s, points, p, k, n, place, slot, kept);
   for (PetscInt i = 0; i < n; ++i) {
     ContactPoint *c;

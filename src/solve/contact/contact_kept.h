@@ -2,7 +2,8 @@
  * many sides as may meet it at once; of each the state, its reach, m, the force of the last step, N, how much of that
  * stays, what of the reach has come by leaps of the gap, m, the share of this that the last step's sliding takes back,
  * and by how much held nodes have let the wall pass it, m. Where there may be more than one side, each is known by its
- * normal. */
+ * normal. Gaps of walls do not leap: of open ones explicit dynamics keeps there the side that the point came from, 1 or
+ * -1 (0: not known), and at what distance on that side the substep leaves it, m, below 0 beyond the wall. */
 #pragma once
 #include "points/points.h"
 #include "wall/wall.h"
@@ -13,6 +14,8 @@
 #define KEPT_STAYS(dim) (2 + (dim))
 #define KEPT_LEAPT(dim) (3 + (dim))
 #define KEPT_TAKES(dim) (4 + (dim))
+#define KEPT_SIDE(dim) KEPT_LEAPT(dim)
+#define KEPT_DISTANCE(dim) KEPT_TAKES(dim)
 #define KEPT_PASSED(dim) (5 + (dim))
 #define KEPT_NORMAL(dim) (6 + (dim)) /* dim numbers, where partners may have several sides */
 
