@@ -41,6 +41,7 @@ typedef struct {
 typedef struct {
   BasisNodes nodes;
   PetscInt halo;          /* of a grid: layers of nodes beyond those of the cells that points may see */
+  PetscInt across;        /* of a grid: cells that nodes whose points couple them are apart at most, along an axis */
   PetscBool domains;      /* do points have domains (POINT_DOMAIN)? */
   PetscBool ends_at_held; /* does it want to know where what the boundary holds ends? */
   /* do functions of inner nodes vanish on the hull, so that what is prescribed at its nodes holds

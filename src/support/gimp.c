@@ -67,9 +67,9 @@ static void line_bends(const LineFunctions *f, const PetscReal *line, PetscReal 
 
 /* Of rings, the means at the upper and lower end are those over circles. */
 static void lean_ends(const GridBox *box, const ProductPlace *place, const LineFunctions *f, PetscReal radius,
-                      PetscReal l, const PetscReal along[3], PetscReal *bend)
+                      PetscReal l, const PetscReal along[SPLINE_LINE], PetscReal *bend)
 {
-  PetscReal ends[2 * PRODUCT_MOST_NODES], whole[3][3] = {{0}};
+  PetscReal ends[2 * PRODUCT_MOST_NODES], whole[3][SPLINE_LINE] = {{0}};
   PetscInt node[PRODUCT_MOST_NODES];
   LineFunctions leans[2] = {f[0], f[1]};
   for (int k = 0; k < 3; ++k) {
@@ -85,7 +85,7 @@ static PetscInt gimp_bends(const BasisInput *in, const Points *points, PetscInt 
   const GridBox *box = in->grid->box;
   const ProductPlace place = product_place(in->grid, points->cell[p]);
   const PetscReal *x = point_real(points, POINT_X, p);
-  PetscReal l[3] = {0}, along[3][3] = {{0}};
+  PetscReal l[3] = {0}, along[3][SPLINE_LINE] = {{0}};
   LineFunctions f[3];
   product_domain(points, p, place.size, l);
   for (PetscInt d = 0; d < box->dim; ++d) {
@@ -105,7 +105,7 @@ static PetscErrorCode GimpSupport(const BasisInput *in, const Points *points, Su
   PetscInt n = 0, p = 0;
 
   PetscFunctionBeginUser;
-  PetscCall(ProductsReserve(points, dim, s));
+  PetscCall(ProductsReserve(points, dim, GIMP_LINE, s));
   for (; p < points->n && points->cell[p] >= 0; ++p) {
     if (!p || points->cell[p] != points->cell[p - 1]) place = product_place(in->grid, points->cell[p]);
     product_group(s, p, n);
@@ -137,6 +137,7 @@ static const char *gimp_misfit(const GridSpec *grid)
 const Basis basis_gimp = {
   .nodes = BASIS_OF_GRID,
   .halo = 1,
+  .across = GIMP_LINE - 1,
   .domains = PETSC_TRUE,
   .holds_boundary = PETSC_TRUE,
   .misfit = gimp_misfit,

@@ -165,7 +165,7 @@ static PetscInt add_piece(const GridBox *box, const ProductPlace *place, const P
 PetscErrorCode PiecesSupport(const BasisInput *in, const Points *carriers, Support *s)
 {
   const GridBox *box = in->grid->box;
-  const PetscInt most = (box->dim == 2 ? 9 : PRODUCT_MOST_NODES) * carriers->n;
+  const PetscInt most = product_nodes(box->dim, GIMP_LINE) * carriers->n;
   PetscInt n = 0, c = 0;
 
   PetscFunctionBeginUser;

@@ -28,9 +28,9 @@ void product_domain(const Points *points, PetscInt p, const PetscReal *size, Pet
 }
 
 /* In rings: slopes along the radius with those of its own weight, and what functions are in slopes along the others. */
-UNROLLED void lean(PetscReal radius, LineFunctions *f, PetscReal leaning[3])
+UNROLLED void lean(PetscReal radius, LineFunctions *f, PetscReal leaning[SPLINE_LINE])
 {
-  for (PetscInt i = 0; i < 3; ++i) leaning[i] = f->N[i];
+  for (PetscInt i = 0; i < f->n; ++i) leaning[i] = f->N[i];
   for (PetscInt i = 0; radius > 0 && i < f->n; ++i) {
     f->dN[i] += f->moment[i] / radius;
     leaning[i] += f->lean[i] / radius;
@@ -53,7 +53,7 @@ UNROLLED PetscInt functions_of(const PetscInt dim, const GridBox *box, const Pro
                                LineFunctions *f, PetscInt *node, PetscReal *N, PetscReal *dN)
 {
   PetscInt n = 1, at[3] = {0, 0, 0};
-  PetscReal leaning[3];
+  PetscReal leaning[SPLINE_LINE];
   lean(radius, f, leaning);
   for (PetscInt d = 0; d < dim; ++d) n *= f[d].n;
   for (PetscInt q = 0; q < n; ++q) {
@@ -84,22 +84,22 @@ PetscInt product_functions(const GridBox *box, const ProductPlace *place, PetscR
 }
 
 PetscInt product_bends(const GridBox *box, const ProductPlace *place, const LineFunctions *f,
-                       const PetscReal along[3][3], PetscInt *node, PetscReal *bend)
+                       const PetscReal along[3][SPLINE_LINE], PetscInt *node, PetscReal *bend)
 {
   PetscReal N[PRODUCT_MOST_NODES], dN[3 * PRODUCT_MOST_NODES];
   PetscInt n = 0;
   for (PetscInt d = 0; d < box->dim; ++d) {
     LineFunctions bent[3] = {f[0], f[1], box->dim == 3 ? f[2] : f[1]};
-    for (int k = 0; k < 3; ++k) bent[d].N[k] = along[d][k];
+    for (int k = 0; k < SPLINE_LINE; ++k) bent[d].N[k] = along[d][k];
     n = product_functions(box, place, 0, bent, node, N, dN);
     for (PetscInt k = 0; k < n; ++k) bend[k * box->dim + d] = N[k];
   }
   return n;
 }
 
-PetscErrorCode ProductsReserve(const Points *points, PetscInt dim, Support *support)
+PetscErrorCode ProductsReserve(const Points *points, PetscInt dim, PetscInt line, Support *support)
 {
-  const PetscInt most = dim == 2 ? 9 : PRODUCT_MOST_NODES;
+  const PetscInt most = product_nodes(dim, line);
   PetscFunctionBeginUser;
   PetscCall(SupportReserve(support, points->n, most * points->n, most * points->n, dim));
   PetscFunctionReturn(0);
@@ -112,14 +112,13 @@ void products_end(Support *s, PetscInt n_groups, PetscInt n)
   s->n_runs = 0;
 }
 
-/* The nodes around one, itself among them; of the sides of the box there are fewer. */
-static PetscInt nodes_around(const GridBox *box, const PetscInt at[LATTICE], PetscInt *node)
+PetscInt nodes_around(const GridBox *box, const PetscInt at[LATTICE], PetscInt below, PetscInt above, PetscInt *node)
 {
   VoxelBlock around;
   PetscInt n = 0, ijk[LATTICE];
   for (int d = 0; d < LATTICE; ++d) {
-    around.lo[d] = d < box->dim ? PetscMax(at[d] - 1, 0) : at[d];
-    around.hi[d] = 1 + (d < box->dim ? PetscMin(at[d] + 1, box->counts[d]) : at[d]);
+    around.lo[d] = d < box->dim ? PetscMax(at[d] - below, 0) : at[d];
+    around.hi[d] = 1 + (d < box->dim ? PetscMin(at[d] + above, box->counts[d]) : at[d]);
   }
   for (PetscBool more = block_first(&around, ijk); more; more = block_next(&around, ijk))
     node[n++] = box_node(box, ijk);
@@ -140,7 +139,7 @@ PetscErrorCode ProductsCouplings(const BasisInput *in, const BasisSites *sites, 
     for (PetscInt corner = 0; corner < 1 << box->dim; ++corner) {
       for (PetscInt d = 0; d < LATTICE; ++d) at[d] = cell[d] + (d < box->dim ? corner >> d & 1 : 0);
       if (!PetscBTLookupSet(done, box_node(box, at)))
-        PetscCall(NodeGroupsAdd(groups, nodes_around(box, at, node), node));
+        PetscCall(NodeGroupsAdd(groups, nodes_around(box, at, 1, 1, node), node));
     }
   }
   PetscCall(PetscBTDestroy(&done));

@@ -1,16 +1,18 @@
-/* Shape functions of a box that are products of functions along its axes, where a point sees the node
- * next to it and one on each side: what gimp and bspline have in common. */
+/* Shape functions of a box that are products of functions along its axes: what gimp and bspline have in common. */
 #pragma once
 #include "grid/box/box.h"
 #include "support/basis.h"
 
-#define PRODUCT_MOST_NODES 27
+/* Nodes along an axis, of gimp at most, of splines at most, and in space of these. */
+#define GIMP_LINE 3
+#define SPLINE_LINE 4
+#define PRODUCT_MOST_NODES 64
 
 /* Nodes first .. first + n - 1 along an axis. What rings add, times the radius: moment to dN, lean to the N that slopes
  * along the other axis have as a factor. */
 typedef struct {
   PetscInt first, n;
-  PetscReal N[3], dN[3], moment[3], lean[3];
+  PetscReal N[SPLINE_LINE], dN[SPLINE_LINE], moment[SPLINE_LINE], lean[SPLINE_LINE];
 } LineFunctions;
 
 /* Where a point is: the voxel of its cell, and the cell's lengths. */
@@ -42,7 +44,7 @@ PetscInt product_functions(const GridBox *box, const ProductPlace *place, PetscR
                            PetscInt *node, PetscReal *N, PetscReal *dN);
 /* Basis.bends of products: `along` are second derivatives along each axis of what its functions are. */
 PetscInt product_bends(const GridBox *box, const ProductPlace *place, const LineFunctions *f,
-                       const PetscReal along[3][3], PetscInt *node, PetscReal *bend);
+                       const PetscReal along[3][SPLINE_LINE], PetscInt *node, PetscReal *bend);
 /* gimp.c. Those of point p, wherever its cell has been left. */
 PetscInt gimp_functions(const GridBox *box, PetscBool hoop, const Points *points, PetscInt p, const ProductPlace *place,
                         PetscInt *node, PetscReal *N, PetscReal *dN);
@@ -50,8 +52,14 @@ PetscInt gimp_functions(const GridBox *box, PetscBool hoop, const Points *points
 LineFunctions gimp_line(const PetscReal *line, PetscInt i, PetscInt n, PetscReal x, PetscReal l);
 /* pieces.c; Basis.carry. */
 PetscErrorCode PiecesSupport(const BasisInput *in, const Points *carriers, Support *support);
-/* Room for groups of single points, which then come one after the other. */
-PetscErrorCode ProductsReserve(const Points *points, PetscInt dim, Support *support);
+/* In a box, with so many along an axis. */
+static inline PetscInt product_nodes(PetscInt dim, PetscInt line)
+{
+  return dim == 2 ? line * line : line * line * line;
+}
+
+/* Room for groups of single points, which then come one after the other, with at most so many nodes along an axis. */
+PetscErrorCode ProductsReserve(const Points *points, PetscInt dim, PetscInt line, Support *support);
 /* Point p, whose functions stand behind the n numbers that there are, has nn of them. */
 static inline void product_group(Support *s, PetscInt p, PetscInt n)
 {
@@ -60,6 +68,9 @@ static inline void product_group(Support *s, PetscInt p, PetscInt n)
 }
 /* No more points: n_groups of them have n numbers. */
 void products_end(Support *support, PetscInt n_groups, PetscInt n);
-/* Basis.couplings: a point sees the nodes around the corner of its cell next to it, never farther apart
+/* The nodes from so many lines below one to so many above it, itself among them; of the sides of the box there are
+ * fewer. */
+PetscInt nodes_around(const GridBox *box, const PetscInt at[LATTICE], PetscInt below, PetscInt above, PetscInt *node);
+/* Basis.couplings of gimp: a point sees the nodes around the corner of its cell next to it, never farther apart
  * than two cells. */
 PetscErrorCode ProductsCouplings(const BasisInput *in, const BasisSites *sites, NodeGroups *groups);

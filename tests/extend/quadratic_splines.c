@@ -106,6 +106,7 @@ static PetscErrorCode SplineCouplings(const BasisInput *in, const BasisSites *si
 
 const Basis basis_quadratic_splines = {
   .nodes = BASIS_OF_GRID,
+  .across = 2,
   .holds_boundary = PETSC_TRUE,
   .misfit = spline_misfit,
   .support = SplineSupport,

@@ -225,12 +225,47 @@ static void test_loaded(void **state)
     }
 }
 
+/* A column that hangs by its top and is pulled to 1.3 of its length in steps: its points come to stand anywhere in the
+ * cells, and the stress is that of its load all the same. */
+static void drawn(const char *basis)
+{
+  const PetscReal h = 0.25;
+  PetscReal sigma[6];
+  Bench b;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 1);
+  bench_grid(&b, (PetscReal[3]){0, 0, 0}, (PetscReal[3]){h, 1.75, 0}, h);
+  bench_box(&b, 0, (PetscReal[3]){0, 0, 0}, (PetscReal[3]){h, 1, 0});
+  b.c.basis.kind = basis;
+  b.c.newton.residual = 1e-10;
+  b.c.analysis.step = b.c.analysis.largest = 1.0 / 16;
+  bench_motion(&b, 0, 0, MOTION_FIXED, 1);
+  bench_motion(&b, 0, h, MOTION_FIXED, 1);
+  bench_motion(&b, 1, 0, MOTION_FIXED, 2);
+  bench_traction(&b, 1, 1, "body", 0, 3e5, 0);
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  (void)run_through(m);
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    CALL(ModelPointStress(m, p, sigma));
+    CHECK_CLOSE(sigma[1] / 3e5, 1, 1e-8);
+    CHECK(point_real(m->points, POINT_F, p)[3] > 1.2, "hardly drawn");
+  }
+  CALL(ModelDestroy(&m));
+  bench_end(&b);
+}
+
+static void test_drawn(void **state)
+{
+  (void)state;
+  drawn("gimp");
+  drawn("bspline");
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_filled), cmocka_unit_test(test_pressed), cmocka_unit_test(test_rings),
     cmocka_unit_test(test_column), cmocka_unit_test(test_flight),  cmocka_unit_test(test_refused),
-    cmocka_unit_test(test_middle), cmocka_unit_test(test_loaded),
+    cmocka_unit_test(test_middle), cmocka_unit_test(test_loaded),  cmocka_unit_test(test_drawn),
   };
   return run_model_tests(argc, argv, tests);
 }

@@ -140,7 +140,7 @@ static void test_levels(void **state)
   levels(2, "cell", 0.05, 0.02, 14);
   levels(2, "gimp", 0.0625, 0.02, 14);
   levels(3, "bspline", 0.25, 0, 18);
-  levels(3, "bspline", 0.25, 0.02, 25); /* outer nodes follow those inside along lines that no coarse node knows */
+  levels(3, "bspline", 0.25, 0.02, 30); /* outer nodes follow those inside along lines that no coarse node knows */
 }
 
 /* Numbers from the diagonals on, of the step to come at rest; half: as Newton's method has them gathered. */

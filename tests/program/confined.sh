@@ -33,7 +33,7 @@ done
 ranks=1
 settles 0.01 --set grid.cell=triangle --set 'bodies[0].points_per_cell=3'
 settles 0.01 --set method=mpm --set 'basis={gimp: {}}'
-settles 0.01 --set method=mpm --set 'basis={bspline: {}}' --set 'bodies[0].points_per_cell=9'
+settles 0.01 --set method=mpm --set 'basis={bspline: {}}' --set 'bodies[0].points_per_cell=9' --set grid.size=0.03125
 settles 0.01 --set kinematics=axisymmetric
 for cell in hexahedron tetrahedron; do
   turn

@@ -53,8 +53,7 @@ static PetscErrorCode FindExtents(const Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-/* Would all nodes of point p be known to this rank and stand around one corner of its cell, as the system's pattern
- * has it, if there were no followers, or only this one and the others were not there? */
+/* Would all nodes of point p be known to this rank and stand as near together as the system's pattern has them, if there were no followers, or only this one and the others were not there? */
 static PetscBool sees_near(const Discretisation *s, const Seen *seen, PetscInt p, PetscInt only)
 {
   const Extension *e = s->extension;
@@ -73,7 +72,7 @@ static PetscBool sees_near(const Discretisation *s, const Seen *seen, PetscInt p
     }
   }
   for (PetscInt d = 0; d < s->grid->dim; ++d)
-    if (low[d] < cell[d] - 1 || high[d] > cell[d] + 2 || high[d] - low[d] > 2) return PETSC_FALSE;
+    if (low[d] < cell[d] - 1 || high[d] > cell[d] + 2 || high[d] - low[d] > s->basis->across) return PETSC_FALSE;
   return PETSC_TRUE;
 }
 

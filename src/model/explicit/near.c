@@ -114,7 +114,7 @@ static PetscInt look_smoothly(const Model *m, const Lattice *l, PetscInt p, Pets
 
 PetscErrorCode NearSee(const Model *m, Explicit *e)
 {
-  const PetscInt dim = m->dim, n = e->near.n, most = e->smooth ? PRODUCT_MOST_NODES : 1 << dim;
+  const PetscInt dim = m->dim, n = e->near.n, most = e->smooth ? product_nodes(dim, GIMP_LINE) : 1 << dim;
   Support *s = e->near.support;
 
   PetscFunctionBeginUser;

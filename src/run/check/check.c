@@ -127,12 +127,12 @@ static PetscErrorCode ReportBodies(const Model *m, Diag *diag, FILE *out)
 /* Lists that grow have as much room to spare. */
 #define ROOM 1.25
 
-/* Nodes that a point with a domain comes to see, and their square: along each axis three of splines; of gimp two, or
- * three where its domain, half a cell as a rule, lies across a line. */
+/* Nodes that a point with a domain comes to see, and their square: along each axis three of splines, of gimp two, and
+ * one more where its domain, half a cell as a rule, lies across a knot, of gimp a line. */
 static PetscReal nodes_of_domain(const Model *m, int power)
 {
-  const PetscReal across = m->space->basis == basis_find("gimp") ? 0.5 : 1;
-  const PetscReal mean = power == 1 ? 2 + across : 4 + 5 * across;
+  const PetscReal least = m->space->basis == basis_find("gimp") ? 2 : 3, more = least + 1;
+  const PetscReal mean = power == 1 ? 0.5 * (least + more) : 0.5 * (least * least + more * more);
   return m->dim == 3 ? mean * mean * mean : mean * mean;
 }
 
