@@ -2,6 +2,8 @@
  * nodes keep their history as in fem. Cells give nodes and points at the start and mean nothing
  * afterwards. */
 #include "method/gmm/gmm.h"
+#include "method/transfer/mass.h"
+#include "method/transfer/transfer.h"
 
 #define KEEP_OFF 0.25 /* spacings between nodes, at least */
 
@@ -82,11 +84,20 @@ static PetscErrorCode GmmInitialise(Discretisation *s)
   PetscFunctionBeginUser;
   if (!s->started) PetscCall(GmmStart(s));
   PetscCall(GmmBalance(s));
+  PetscCall(MassRowsDestroy(&s->mass_rows)); /* of other nodes, whose number changes with the ghosts */
   PetscCall(GmmGather(s));
   PetscCall(DiscretisationMass(s));
   if (!s->started) PetscCall(DiscretisationBodyVelocity(s));
   s->started = PETSC_TRUE;
   PetscCall(Stabilise(s));
+  PetscFunctionReturn(0);
+}
+
+/* Free nodes feel no impulse when what is prescribed jumps, be it at a knot of an amplitude. */
+static PetscErrorCode GmmHold(Discretisation *s)
+{
+  PetscFunctionBeginUser;
+  PetscCall(transfer_find("consistent")->hold(s));
   PetscFunctionReturn(0);
 }
 
@@ -217,6 +228,7 @@ const Method method_gmm = {
   .clouds = PETSC_TRUE,
   .initialise = GmmInitialise,
   .begin = GmmCarry,
+  .hold = GmmHold,
   .convect = GmmConvect,
   .carries = cloud_carries,
   .destroy = GmmDestroy,

@@ -188,6 +188,8 @@ PetscErrorCode GmmCarry(Discretisation *s)
     n->a[i] = n->a_points[i];
   }
   PetscCall(MassSolveDestroy(&c));
+  PetscCall(GridToGhosts(s->grid, dim, n->v_points));
+  PetscCall(GridToGhosts(s->grid, dim, n->a_points));
   PetscCall(GridToGhosts(s->grid, dim, n->v));
   PetscCall(GridToGhosts(s->grid, dim, n->a));
   PetscFunctionReturn(0);

@@ -74,26 +74,41 @@ PetscErrorCode PrepareUnknowns(Model *m, StepStart *start, StepReport *report)
 /* Of the larger speed: what is prescribed jumps by more, and not by what Newmark's formulas are off. */
 #define JUMP 1e-2
 
-/* A mesh that moves with the body keeps its own history, but where what is prescribed jumps, which would ring for ever:
- * there it goes on as the parabola through the middle and the end of the step begins. */
-static PetscErrorCode SetJumps(Model *m, PetscReal dt)
+/* Velocity and acceleration with which the parabola through the middle and the end of what is prescribed begins. */
+static PetscErrorCode PrescribedStart(const Model *m, PetscReal dt, PetscReal *v, PetscReal *a)
 {
-  NodalFields *n = m->nodes;
-  PetscReal *half, *motion[] = {n->v, n->a};
+  PetscReal *half;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &half));
   boundary_increments(m->boundary, m->grid, m->time, m->time + dt / 2, half);
+  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
+    v[i] = (4 * half[i] - m->nodes->prescribed[i]) / dt;
+    a[i] = 4 * (m->nodes->prescribed[i] - 2 * half[i]) / PetscSqr(dt);
+  }
+  PetscCall(PetscFree(half));
+  PetscFunctionReturn(0);
+}
+
+/* A mesh that moves with the body keeps its own history, but where what is prescribed jumps, which would ring for ever:
+ * there it goes on as the parabola of what is prescribed. */
+static PetscErrorCode SetJumps(Model *m, PetscReal dt)
+{
+  NodalFields *n = m->nodes;
+  PetscReal *v, *a, *motion[] = {n->v, n->a};
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc2(m->grid->n_nodes * m->dim, &v, m->grid->n_nodes * m->dim, &a));
+  PetscCall(PrescribedStart(m, dt, v, a));
   for (int k = 0; k < 2; ++k) frames_turn(&m->boundary->frames, m->dim, motion[k]);
   for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
     if (!m->boundary->fixed[i] || !n->fixed[i]) continue;
-    const PetscReal v = (4 * half[i] - n->prescribed[i]) / dt;
-    if (PetscAbsReal(v - n->v[i]) <= JUMP * PetscMax(PetscAbsReal(v), PetscAbsReal(n->v[i]))) continue;
-    n->v[i] = v;
-    n->a[i] = 4 * (n->prescribed[i] - 2 * half[i]) / PetscSqr(dt);
+    if (PetscAbsReal(v[i] - n->v[i]) <= JUMP * PetscMax(PetscAbsReal(v[i]), PetscAbsReal(n->v[i]))) continue;
+    n->v[i] = v[i];
+    n->a[i] = a[i];
   }
   for (int k = 0; k < 2; ++k) frames_turn(&m->boundary->frames, m->dim, motion[k]);
-  PetscCall(PetscFree(half));
+  PetscCall(PetscFree2(v, a));
   PetscFunctionReturn(0);
 }
 
@@ -115,23 +130,25 @@ static void set_boundary_kinematics(Model *m, PetscReal dt)
 
 /* A constraint on displacements lets the velocity of the field ring about the prescribed one, as
  * Newmark's formulas do at any node that is stopped. So the coefficients of constrained nodes start
- * each step with the prescribed motion, like prescribed nodes themselves. */
+ * each step with the prescribed motion and its acceleration. */
 static PetscErrorCode HoldConstraints(Model *m, PetscReal dt)
 {
   NodalFields *n = m->nodes;
   const Constraints *c = m->space->constraints;
-  PetscReal *correction;
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  PetscReal *v, *a, *correction;
 
   PetscFunctionBeginUser;
   if (!m->n_constraints) PetscFunctionReturn(0);
-  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &correction));
+  PetscCall(PetscCalloc3(dofs, &correction, dofs, &v, dofs, &a));
+  PetscCall(PrescribedStart(m, dt, v, a));
   for (int sweep = 0; sweep < 20; ++sweep) {
-    constraints_relax(c, m->boundary->fixed, n->prescribed, 1 / dt, n->v, correction);
-    constraints_relax(c, m->boundary->fixed, n->prescribed, 0, n->a, correction);
+    constraints_relax(c, m->boundary->fixed, v, n->v, correction);
+    constraints_relax(c, m->boundary->fixed, a, n->a, correction);
     PetscCall(GridToGhosts(m->grid, m->dim, n->v));
     PetscCall(GridToGhosts(m->grid, m->dim, n->a));
   }
-  PetscCall(PetscFree(correction));
+  PetscCall(PetscFree3(correction, v, a));
   PetscFunctionReturn(0);
 }
 

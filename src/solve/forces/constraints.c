@@ -113,13 +113,13 @@ void constraints_assemble(const Constraints *c, const NodalScene *scene, const N
       if (!scene->fixed[c->twin[k] * c->dim + d]) assemble_component(c, k, d, scene, out);
 }
 
-void constraints_relax(const Constraints *c, const unsigned char *held, const PetscReal *target, PetscReal scale,
-                       PetscReal *v, PetscReal *correction)
+void constraints_relax(const Constraints *c, const unsigned char *held, const PetscReal *target, PetscReal *v,
+                       PetscReal *correction)
 {
   for (PetscInt k = 0; k < c->n; ++k)
     for (PetscInt d = 0; d < c->dim; ++d) {
       const PetscInt at = c->at[k] * c->dim + d;
-      PetscReal gap = scale * target[at], share = 0;
+      PetscReal gap = target[at], share = 0;
       for (PetscInt e = c->start[k]; e < c->start[k + 1]; ++e) {
         const PetscReal N = c->N[e * c->dim + d];
         gap -= N * v[c->node[e] * c->dim + d];

@@ -34,5 +34,5 @@ PetscBool constraints_find_slots(Constraints *constraints, const System *system)
  * not over its own: slower, but it does not swing up where a node has less of the field than its
  * neighbours. Dofs with held[] only (of the constrained nodes). correction: as long as v, zero at
  * call and return. */
-void constraints_relax(const Constraints *constraints, const unsigned char *held, const PetscReal *target,
-                       PetscReal scale, PetscReal *v, PetscReal *correction);
+void constraints_relax(const Constraints *constraints, const unsigned char *held, const PetscReal *target, PetscReal *v,
+                       PetscReal *correction);
