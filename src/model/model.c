@@ -339,6 +339,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(ModelInitialise(m));
   PetscCall(ForcesCreate(m, diag));
   if (m->method->clouds) PetscCall(ModelWarnOfObstacles(m, diag));
+  PetscCall(CheckLevel(m, diag));
   PetscCall(AdviseBeside(m, diag));
   if (!m->time) PetscCall(AdviseHangs(m, diag));
   if (!m->time && !case_goes_on(m->c)) PetscCall(AstrideLook(m));

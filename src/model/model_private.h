@@ -362,6 +362,8 @@ void advise_down(const Model *model, Diag *diag);
 PetscErrorCode AdvisePassing(const Model *model, Diag *diag);
 /* beside.c. Collective. The same of what is prescribed where no material is; once nodes know what touches them. */
 PetscErrorCode AdviseBeside(const Model *model, Diag *diag);
+/* Collective. An error where nothing determines the level of the pressure. */
+PetscErrorCode CheckLevel(Model *model, Diag *diag);
 /* hangs.c. Collective. The same of what holds a body only where one that it meets is held; at the start, and if nothing
  * was said then at the end of a run, which may have brought it there. */
 PetscErrorCode AdviseHangs(Model *model, Diag *diag);

@@ -63,4 +63,13 @@ done
 expect "k0" 0 "$talus" run column.yaml --out run --force --quiet --set 'bodies=[{name: c, shape: {box: {min: [0, 0], max: [0.25, 1]}}, material: m, k0: 1}]' --set 'analysis={type: dynamic, end: 0.02, step: 2e-3}' \
   --set 'measures={top: {displacement: y, of: {tracer: [0.1, 0.9]}}}' --set 'output={history: {steps: 1}}'
 awk -F, 'NR > 2 && $3 * $3 > 1e-22 { exit 1 }' run/history.csv || fail "$name: $(tail -n 1 run/history.csv)"
+# --- held all around, what is exactly incompressible has no level of its pressure ---
+for method in fem mpm; do
+  expect "held all around, $method" 2 "$talus" check column.yaml --set method=$method --set 'grid.box.max=[0.25, 1]' --set 'boundary=[{on: {}, fix: [x, y]}]' --set materials.m.poisson=0.5
+  says err.txt "nothing determines the level of the pressure in 'c'" "poisson: 0.4999"
+  expect "slides all around, $method" 2 "$talus" check column.yaml --set method=$method --set 'grid.box.max=[0.25, 1]' --set materials.m.poisson=0.5 \
+    --set 'boundary=[{on: {x: 0}, fix: [x]}, {on: {x: 0.25}, fix: [x]}, {on: {y: 0}, fix: [y]}, {on: {y: 1}, fix: [y]}]'
+  says err.txt "nothing determines the level of the pressure in 'c'"
+  expect "free at its top, $method" 0 "$talus" check column.yaml --set method=$method --set materials.m.poisson=0.5
+done
 finish
