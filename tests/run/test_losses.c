@@ -128,10 +128,6 @@ static void test_made(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_crowd), cmocka_unit_test(test_no_number),
-<<<<<<< HEAD
-                                     cmocka_unit_test(test_kept)};
-=======
-                                     cmocka_unit_test(test_made)};
->>>>>>> bdc08b37 (Let walls that come in explicit dynamics push nothing they find)
+                                     cmocka_unit_test(test_kept), cmocka_unit_test(test_made)};
   return run_model_tests(argc, argv, tests);
 }
