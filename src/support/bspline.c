@@ -131,11 +131,11 @@ static void axis_functions(const BasisInput *in, const Points *points, PetscInt 
                            LineFunctions f[3])
 {
   const PetscReal *x = point_real(points, POINT_X, p);
-  PetscReal l[3];
+  PetscReal l[3] = {0};
   PetscInt at[LATTICE];
   half_lengths(points, p, place->size, l);
   nodes_next_to(in, x, place, at);
-  for (PetscInt d = 0; d < in->grid->dim; ++d)
+  for (PetscInt d = 0; d < 3 && d < in->grid->dim; ++d)
     f[d] = has_means(points, p, place->size, d) ? functions_over(in, place, at, d, x[d], l[d])
                                                 : functions_at(in, place, at, d, x[d], l[d]);
 }
