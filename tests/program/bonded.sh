@@ -97,7 +97,7 @@ for steps in 10 40; do
   awk -F, 'NR > 1 && $4 != 0 {bad = 1} END {exit bad}' turn/history.csv || fail "$name: balance"
 done
 # What swings on a wall that holds it, or that its weight presses it on, keeps its energy for ten periods: gaps that stay
-# are a thousandth of what moves.
+# are some thousandths of what moves.
 cat >swings.yaml <<'END'
 kinematics: plane-strain
 method: fem

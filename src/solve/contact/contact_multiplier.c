@@ -14,6 +14,7 @@
  * a gap would bear any force. Less than so much, of a cell, counts for nothing, unless it is more than a share as large
  * of what the largest force there takes: stiff bodies under little are squeezed by less. The last is round-off. */
 #define MOVING 1e-3
+#define SWINGS 3e-3 /* the same of what swings on a wall, or a body, by more than what counts for nothing */
 #define STANDING 1e-9
 #define ROUND_OFF 1e-16
 #define TRIES 6        /* changes in which that is sought: a step must not fail for it */
@@ -344,7 +345,8 @@ static PetscErrorCode LookAt(const Contact *s, const NodalScene *scene, PetscInt
 }
 
 /* What may stay of gaps, or of slips, which `times` as much may. A gap that is taken away while the pressure is high,
- * and let be while it is low, gives energy to what swings on a wall: where nothing slides it is a share of what swings. */
+ * and let be while it is low, gives energy to what swings on a wall: where nothing slides it is a share of what swings.
+ * What rests would be shaken by that. */
 static PetscReal allowed(const Contact *s, PetscInt change, const PetscReal most[OF_ALL], PetscReal times)
 {
   const PetscReal closed = closed_by(s, change, most[OF_PRESSED]), asked = s->share.asked;
@@ -355,7 +357,7 @@ static PetscReal allowed(const Contact *s, PetscInt change, const PetscReal most
   PetscReal stays = closed;
   if (s->share.flows) stays = PetscMax(closed, times * PetscMin(MOVED * most[OF_MOTIONS], FLOWING * s->length));
   else if (sought && !(s->share.moves && travelled == 0)) stays = PetscMin(closed, MOVING * travelled);
-  else if (sought && swing > 0) stays = PetscMin(closed, MOVING * PetscMax(CLOSED * s->length, swing));
+  else if (sought && SWINGS * swing > STANDING * s->length) stays = PetscMin(closed, SWINGS * swing);
   return PetscMax(still, asked * stays);
 }
 
