@@ -257,22 +257,29 @@ static double Place(const char *svg, const char *word, int axis)
   return x[axis];
 }
 
-/* The number at the end of an axis is half beyond it, and within the picture: seven letters of 11 pixels. */
-static void test_last_number(void **state)
+/* A picture of a line from one place to another; the folder is the caller's to remove, the text to free. */
+static char *DrawLine(const PetscReal x[2], const PetscReal y[2], char folder[64])
 {
-  const PetscReal x[] = {60e6, 120e6}, y[] = {0, 1};
   const FigureSeries curve = {.n = 2, .x = x, .y = y};
   const Figure figure = {.n_series = 1, .series = &curve};
-  char folder[64], path[128];
+  char path[128];
   PetscBool done;
   Diag *diag;
-  (void)state;
   TestFolder(folder);
   snprintf(path, sizeof path, "%s/a.svg", folder);
   assert_int_equal(DiagCreate(&diag), 0);
   assert_int_equal(FigureWrite(&figure, path, diag, &done), 0);
   assert_int_equal(DiagDestroy(&diag), 0);
-  char *svg = TestRead(folder, "a.svg");
+  return TestRead(folder, "a.svg");
+}
+
+/* The number at the end of an axis is half beyond it, and within the picture: seven letters of 11 pixels. */
+static void test_last_number(void **state)
+{
+  const PetscReal x[] = {60e6, 120e6}, y[] = {0, 1};
+  char folder[64];
+  (void)state;
+  char *svg = DrawLine(x, y, folder);
   assert_true(Place(svg, ">1.2e+08<", 0) + 0.5 * 7 * 11 <= 900);
   free(svg);
   TestRemove(folder);
@@ -333,18 +340,9 @@ static void test_legend_right(void **state)
 static void test_narrow_ticks(void **state)
 {
   const PetscReal x[2] = {1000.12, 1000.13}, y[2] = {0, 1};
-  const FigureSeries curve = {.n = 2, .x = x, .y = y};
-  const Figure figure = {.n_series = 1, .series = &curve};
-  char folder[64], path[128];
-  PetscBool done;
-  Diag *diag;
+  char folder[64];
   (void)state;
-  TestFolder(folder);
-  snprintf(path, sizeof path, "%s/a.svg", folder);
-  assert_int_equal(DiagCreate(&diag), 0);
-  assert_int_equal(FigureWrite(&figure, path, diag, &done), 0);
-  assert_int_equal(DiagDestroy(&diag), 0);
-  char *svg = TestRead(folder, "a.svg");
+  char *svg = DrawLine(x, y, folder);
   assert_true(Place(svg, ">1000.122<", 0) - Place(svg, ">1000.12<", 0) > 9 * 11);
   free(svg);
   TestRemove(folder);
