@@ -1,7 +1,7 @@
 /* From one stage of a run to the next. */
 #include "base/text.h"
 #include "output/directory/run_dir_files.h"
-#include "run/report/sunk.h"
+#include "run/report/warn/warn.h"
 #include "run/run_private.h"
 #include "run/watch/events.h"
 

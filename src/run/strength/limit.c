@@ -1,7 +1,7 @@
 #include "run/strength/limit.h"
 #include "base/text.h"
 #include "output/directory/run_dir_files.h"
-#include "run/report/losses.h"
+#include "run/report/warn/warn.h"
 #include "run/strength/strength.h"
 
 #define GROWTH 1.5 /* of a step that was taken as it was */

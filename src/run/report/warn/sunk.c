@@ -1,5 +1,5 @@
 /* What has sunk into walls and other bodies: contact of explicit dynamics is a spring about as stiff as a cell. */
-#include "run/report/sunk.h"
+#include "run/report/warn/warn.h"
 
 #define SUNK_ALLOWED 0.01 /* of a cell, where the run ends: by so much of a cell too much does the body give way */
 #define STIFFER 10        /* springs that hold what was ten times as fast as what these hold */

@@ -1,5 +1,5 @@
 /* Walls with mass that went where nothing stops them: walls meet material, and not each other. */
-#include "run/report/through.h"
+#include "run/report/warn/warn.h"
 
 /* The first other wall that the centre of wall k lies in, or -1. */
 static PetscInt wall_around(const Model *m, PetscInt k, const PetscReal *centre)

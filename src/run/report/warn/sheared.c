@@ -1,7 +1,7 @@
 /* Grains whose friction grows with the rate of shear, in steps that shear them much: within a step the axes of stretch
  * turn by a quarter of its shear, the pressure comes out smaller by as much, and where friction hardly grows with the
  * rate the speed is off many times as far (cases/bagnold). */
-#include "run/report/sheared.h"
+#include "run/report/warn/warn.h"
 
 #define SHEAR_ALLOWED 0.012 /* in a step, mean of all: 2 % of the speed of grains on 24 degrees */
 

@@ -1,6 +1,6 @@
 /* What clouds do not see. In elastic material that is drawn out, those of wide functions: zigzags of its nodes grow
  * from step to step, and forces fall with them (docs/theory.md, "Meshfree bases"). And what comes from elsewhere. */
-#include "run/report/stretched.h"
+#include "run/report/warn/warn.h"
 #include "base/text.h"
 #include "support/cloud.h"
 

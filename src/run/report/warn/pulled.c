@@ -1,7 +1,7 @@
 /* Clay that is pulled: a law that must begin under pressure knows no tension, and may bear some all the same (modified
  * Cam clay on the dry side of its ellipse, docs/theory.md, "Laws"). */
 #include "base/math/eigen.h"
-#include "run/report/losses.h"
+#include "run/report/warn/warn.h"
 
 #define TENSION_ALLOWED 0.01 /* of the largest pressure in such material */
 

@@ -1,6 +1,6 @@
 /* Equilibria in which nothing stays: a column that is pressed by more than it bears, and was found straight. Newton's
  * method finds them as well as others, and the length of a step decides which. */
-#include "run/report/unstable.h"
+#include "run/report/warn/warn.h"
 
 void warn_of_unstable(const Model *m, Diag *diag)
 {
