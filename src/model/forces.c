@@ -21,6 +21,7 @@ NodalScene nodal_scene(const Model *m, PetscReal t, const PetscReal *du)
     .first = (PetscBool)(m->step == 0 && m->initial.parts == 0),
     .moves = m->scheme->inertia,
     .passes = (PetscBool)(m->method->restores_grid || m->method->clouds),
+    .stays = equilibrium_stays(m),
     .materials = m->materials,
     .bends = m->space->basis->bends ? extension_bends : NULL,
     .bends_context = m->space,

@@ -8,7 +8,7 @@ static const MeasureNumber *const words[] = {
        "", OF_MODEL, .kept = offsetof(Model, initial.lacked)),
   WORD("left", "the same in the equilibrium; nan where none was sought", "", OF_MODEL,
        .kept = offsetof(Model, initial.left)),
-  WORD("moved", "largest displacement on the way there, likewise", "m", OF_MODEL,
+  WORD("moved", "largest displacement of a point (fem: of a node) on the way there, likewise", "m", OF_MODEL,
        .kept = offsetof(Model, initial.moved)),
   WORD("beyond", "points whose given stress was beyond their strength", "", OF_MODEL,
        .kept = offsetof(Model, initial.beyond)),

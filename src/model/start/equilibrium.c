@@ -52,15 +52,42 @@ PetscErrorCode EquilibriumPrepare(Model *m, StepProblem *p)
 
 PetscBool equilibrium_stays(const Model *m) { return m->initial.seeking && m->c->initial.reset; }
 
-/* The surface of what stays where it is stays, too. */
-static void keep_surface(Model *m)
+/* Of point p in the step, m2. */
+static PetscReal motion2(const Model *m, PetscInt g, PetscInt p)
 {
-  const Contact *s = m->contact;
-  for (PetscInt k = 0; s && k < s->n; ++k) contact_kept_of(s, m->points, s->point + k)[KEPT_REACH] = s->point[k].reach;
+  const Support *w = m->space->support;
+  const PetscInt *node = w->node + w->node_start[g];
+  PetscReal square = 0;
+  for (PetscInt d = 0; d < m->dim; ++d) {
+    PetscReal move = 0;
+    for (PetscInt i = 0; i < support_nodes(w, g); ++i)
+      move += support_N(w, g, p)[i] * m->nodes->du[node[i] * m->dim + d];
+    square += move * move;
+  }
+  return square;
+}
+
+/* The farthest that material has moved in the step. On a grid that is restored nodes are not material: those outside of
+ * the body, which splines reach far away from it, move more than it does. */
+static PetscErrorCode LargestMotion(const Model *m, PetscReal *largest)
+{
+  const Support *w = m->space->support;
+  PetscReal square = 0;
+
+  PetscFunctionBeginUser;
+  if (!m->method->restores_grid) {
+    PetscCall(LargestIncrement(m, largest));
+    PetscFunctionReturn(0);
+  }
+  for (PetscInt g = 0; g < w->n_groups; ++g)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) square = PetscMax(square, motion2(m, g, p));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &square, 1, MPIU_REAL, MPIU_MAX, m->comm));
+  *largest = PetscSqrtReal(square);
+  PetscFunctionReturn(0);
 }
 
 /* Points that stay where they are keep their volume: the J of their strain belongs to a smaller or larger
- * undeformed one. The largest increment is what the round has moved. */
+ * undeformed one. */
 static PetscErrorCode Close(Model *m, const PetscReal *J)
 {
   PetscReal moved;
@@ -68,8 +95,7 @@ static PetscErrorCode Close(Model *m, const PetscReal *J)
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < m->points->n && m->c->initial.reset; ++p)
     point_compress(m->points, p, J[p], m->points->real[POINT_J][p]);
-  if (m->c->initial.reset) keep_surface(m);
-  PetscCall(LargestIncrement(m, &moved));
+  PetscCall(LargestMotion(m, &moved));
   m->initial.moved += moved;
   m->initial.parts += 1;
   PetscFunctionReturn(0);
@@ -143,6 +169,7 @@ static PetscErrorCode Begin(Model *m)
   PetscFunctionBeginUser;
   m->external_work = m->boundary_work = m->damped_energy = m->transfer_energy = m->friction_energy = 0;
   m->numerical_energy = m->held_energy = m->open_energy = 0;
+  for (PetscInt k = 0; m->contact && k < m->contact->n_partners; ++k) m->contact->wall[k].friction = 0;
   m->limit = (Softening){0};
   m->guess = (Guess){0};
   m->cuts = 0;

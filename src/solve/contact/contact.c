@@ -160,6 +160,7 @@ static PetscReal reach_at_end(const Contact *s, const ContactPoint *c, const Nod
 {
   const PetscReal first = scene->points->real[POINT_REACH][c->owner];
   PetscReal n[3], reach = c->ahead;
+  if (scene->stays) return c->reach;
   normal_at_end(s, c, scene->du, n);
   if (c->state == CONTACT_OPEN && c->edge) /* which turns the normal as it goes past, and not the material */
     reach = PetscMax(reach, PetscMin(c->reach, contact_reach_of(scene->points, c->owner, n)));
@@ -202,9 +203,9 @@ static PetscErrorCode Commit(void *data, const NodalScene *scene)
     for (PetscInt d = 0; d < dim && c->state != CONTACT_OPEN; ++d) kept[KEPT_FORCE + d] = s->share.mean * f[d];
     kept[KEPT_STAYS(dim)] = contact_stays(s, c);
     kept[KEPT_LEAPT(dim)] = c->leapt;
-    kept[KEPT_TAKES(dim)] = share_taken_back(s, c);
+    kept[KEPT_TAKES(dim)] = scene->stays ? 0 : share_taken_back(s, c);
     kept[KEPT_PASSED(dim)] = c->passed;
-    contact_keep_normal(kept, dim, s->sides, c->normal);
+    contact_keep_normal(kept, dim, s->sides, scene->stays ? c->facing : c->normal);
   }
   PetscFunctionReturn(0);
 }

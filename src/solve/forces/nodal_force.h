@@ -33,6 +33,7 @@ typedef struct {
   PetscBool first;  /* is it the first step of all? */
   PetscBool moves;  /* does matter resist by inertia? */
   PetscBool passes; /* does matter go through cells, or points of a cloud, that stay? */
+  PetscBool stays;  /* is the step's motion forgotten with it, so that surfaces stay as they are, too? */
   const Material *materials;
   /* Basis.bends of point p, on its n nodes in the support, n x dim; PETSC_FALSE: they do not. NULL: nor do others. */
   PetscBool (*bends)(const void *context, PetscInt p, PetscInt n, PetscReal *bend);

@@ -214,13 +214,14 @@ static PetscErrorCode Assemble(void *data, const NodalScene *scene, const NodalO
   PetscFunctionReturn(0);
 }
 
-/* Carriers take the force on the surface of the step's end along. */
+/* Carriers take the force on the surface of the step's end along, if this is where the next step finds it. */
 static PetscErrorCode Commit(void *data, const NodalScene *scene)
 {
   const Pressures *s = data;
   PetscReal f[3], inverse[9], radius;
 
   PetscFunctionBeginUser;
+  if (scene->stays) PetscFunctionReturn(0);
   for (const Pushed *c = s->pushed; c < s->pushed + s->n; ++c) {
     follow(s, c, scene->du, f, inverse, &radius);
     for (PetscInt d = 0; d < s->loads->dim; ++d) point_real(s->loads->carriers, POINT_FORCE, c->carrier)[d] = f[d];
