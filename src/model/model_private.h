@@ -84,6 +84,8 @@ typedef struct {
  * (initial.acts), over what holds the others, walls and interfaces too; where nothing holds, over what the stress asks
  * of nodes. */
 PetscErrorCode LackOfBalance(Model *model, const AtRest *at, PetscReal *lack);
+/* What the stress of point p asks of its nodes, N. */
+PetscReal stress_force(const Model *model, PetscInt p);
 /* Collective. While it is sought: how much is lacking, and forces that hold what is to be taken away later. */
 PetscErrorCode EquilibriumPrepare(Model *model, StepProblem *problem);
 /* Acceleration now from the balance of momentum with lumped mass, so that a body in free fall

@@ -4,16 +4,19 @@
 
 #define NOTHING 1e-9 /* of the forces of the stress: round-off, over which no share means anything */
 
-/* Norm of what the stresses of points ask of their nodes, each for itself: none of them balances another's. N. */
+PetscReal stress_force(const Model *m, PetscInt p)
+{
+  PetscReal tau[6], square = 0;
+  point_tau(m->points, p, tau);
+  for (int k = 0; k < 6; ++k) square += (k < 3 ? 1 : 2) * tau[k] * tau[k];
+  return PetscSqrtReal(square) * m->points->real[POINT_VOLUME][p] / m->grid->smallest;
+}
+
+/* Square of the norm of what stress asks of all points, each for itself: none of them balances another's. N2. */
 static PetscReal stress_forces2(const Model *m)
 {
   PetscReal sum = 0;
-  for (PetscInt p = 0; p < m->points->n; ++p) {
-    PetscReal tau[6], square = 0;
-    point_tau(m->points, p, tau);
-    for (int k = 0; k < 6; ++k) square += (k < 3 ? 1 : 2) * tau[k] * tau[k];
-    sum += square * PetscSqr(m->points->real[POINT_VOLUME][p] / m->grid->smallest);
-  }
+  for (PetscInt p = 0; p < m->points->n; ++p) sum += PetscSqr(stress_force(m, p));
   return sum;
 }
 

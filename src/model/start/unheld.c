@@ -168,7 +168,7 @@ void unheld_add_place(const Model *m, const UnheldGroup *g, const PetscReal *x, 
 static PetscBool leans_on(const Contact *s, const UnheldGroup *g, const ContactPoint *c)
 {
   const PetscBool own = unheld_is_of(g, s->node[c->first]);
-  if (!contact_bears(s, c)) return PETSC_FALSE;
+  if (!contact_bears(c)) return PETSC_FALSE;
   return c->wall < s->n_walls ? own : (PetscBool)(own != unheld_is_of(g, s->node[c->first + c->own]));
 }
 

@@ -4,7 +4,7 @@
 #define WALL_NUMBERS ((PetscInt)(sizeof(WallState) / sizeof(PetscReal)))
 #define RIGID_NUMBERS ((PetscInt)(sizeof(RigidState) / sizeof(PetscReal)))
 
-#define NEXT_TO_NOTHING 1e-6 /* of the largest force */
+#define NEXT_TO_NOTHING 1e-6 /* of the largest force on a point of the body, by its stress or by what it touches */
 #define LEANS 0.1            /* a normal with such a share of an axis holds along it */
 #define TAKEN_BACK 0.25      /* of a cell: on that way of sliding what a gap has leapt by is taken back */
 
@@ -42,6 +42,7 @@ PetscErrorCode ContactDestroy(Contact **contact)
   PetscCall(PetscFree(s->anchor));
   PetscCall(PetscFree(s->slot));
   PetscCall(PetscFree(s->divisor));
+  PetscCall(PetscFree(s->least));
   PetscCall(PetscFree(s->wall));
   PetscCall(PetscFree(s->rigid));
   PetscCall(PetscFree(s->impulse));
@@ -70,6 +71,17 @@ static PetscBool has_adhesion(const Case *c)
   return PETSC_FALSE;
 }
 
+/* When the run is over. Of an interface: of the body in which less acts, which may lie on the other one. */
+static void take_least(Contact *s, const NodalScene *scene)
+{
+  for (ContactPoint *c = s->point; s->least && c < s->point + s->n; ++c) {
+    c->least = s->least[scene->points->body[c->owner]];
+    if (c->wall < s->n_walls) continue;
+    char *const *between = scene->c->interfaces[c->wall - s->n_walls].between;
+    c->least = PetscMin(s->least[case_body(scene->c, between[0])], s->least[case_body(scene->c, between[1])]);
+  }
+}
+
 static PetscErrorCode Begin(void *data, const NodalScene *scene)
 {
   Contact *s = data;
@@ -79,19 +91,26 @@ static PetscErrorCode Begin(void *data, const NodalScene *scene)
   for (RigidWall *b = s->rigid; b < s->rigid + s->n_rigid; ++b) b->start = b->now;
   contact_again(s);
   PetscCall(ContactFind(s, scene));
+  take_least(s, scene);
   s->adheres = (PetscBool)(scene->c->analysis.type != ANALYSIS_EXPLICIT && has_adhesion(scene->c));
   if (s->adheres) PetscCall(ContactLend(s, scene->grid, PETSC_TRUE, &changed));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactIsOver(Contact *s, MPI_Comm comm)
+PetscErrorCode ContactIsOver(Contact *s, const NodalScene *scene, const PetscReal *force)
 {
-  PetscReal largest = 0;
+  const PetscInt n = scene->c->n_bodies;
 
   PetscFunctionBeginUser;
-  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) largest = PetscMax(largest, contact_last(c));
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, comm));
-  s->least = NEXT_TO_NOTHING * largest;
+  PetscCall(PetscMalloc1(n, &s->least));
+  PetscCall(PetscArraycpy(s->least, force, n));
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    const PetscInt body = scene->points->body[c->owner];
+    s->least[body] = PetscMax(s->least[body], contact_last(c));
+  }
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, s->least, (PetscMPIInt)n, MPIU_REAL, MPIU_MAX, scene->grid->comm));
+  for (PetscInt b = 0; b < n; ++b) s->least[b] *= NEXT_TO_NOTHING;
+  take_least(s, scene);
   PetscFunctionReturn(0);
 }
 
@@ -101,7 +120,7 @@ static void hold(const void *data, const NodalScene *scene, unsigned char *held)
   const Contact *s = data;
   (void)scene;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (!contact_bears(s, c)) continue;
+    if (!contact_bears(c)) continue;
     const PetscBool slides = c->law.kind == CONTACT_FRICTIONLESS || (s->slips && c->law.kind == CONTACT_FRICTION);
     for (PetscInt e = c->first; e < c->first + c->n; ++e)
       for (PetscInt d = 0; d < s->dim; ++d)

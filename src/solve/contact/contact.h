@@ -67,6 +67,7 @@ typedef struct {
   PetscReal facing[3]; /* at the start of the step, as the owner sees it */
   PetscReal slip[3];   /* likewise: motion against the wall, m */
   PetscReal last[3];   /* force of the last step, its mean if matter has inertia, N */
+  PetscReal least;     /* the run is over: with less it holds nothing, N */
   PetscReal stays;     /* share of it that nodes remember as acceleration */
   /* of the impulse at the start of the step: what an impact gives for good, N s; and what the motion along the wall is
    * lent on account of the step's friction, as the force that the balance takes back for it, N */
@@ -126,7 +127,7 @@ typedef struct Contact {
   ContactShare share;
   PetscBool adheres; /* does anything, in implicit steps and statics? */
   PetscBool grips;   /* for a first guess: what was in contact goes along with its wall */
-  PetscReal least;   /* the run is over: what bears less holds nothing, N */
+  PetscReal *least;  /* n_bodies: of the contact points of each when the run is over; NULL: it is not */
   PetscBool slips;   /* is it asked what friction does not hold? */
   /* n_partners x n_bodies: of friction and adhesion where that body meets this partner; 0: it does not slide */
   PetscReal *divisor;
@@ -299,14 +300,15 @@ static inline PetscReal contact_last(const ContactPoint *c)
   return PetscSqrtReal(PetscSqr(c->last[0]) + PetscSqr(c->last[1]) + PetscSqr(c->last[2]));
 }
 /* Does it hold? A wall that only pushes may turn out to hold one way alone: whoever asks looks again after the run
- * (ModelWarnLoose), when what touches and bears next to nothing has been left behind, but for round-off; before, what
- * touches may still come to bear. */
-static inline PetscBool contact_bears(const Contact *contact, const ContactPoint *c)
+ * (ModelWarnLoose), when what touches and bears next to nothing has been left behind, but for round-off, if it is
+ * not bonded; before, what touches may still come to bear. */
+static inline PetscBool contact_bears(const ContactPoint *c)
 {
-  return (PetscBool)(contact_touched(c) && contact_last(c) >= contact->least);
+  return (PetscBool)(contact_touched(c) && (c->law.kind == CONTACT_BONDED || contact_last(c) >= c->least));
 }
-/* Collective. The run is over, and the contact points are those that it ends with. */
-PetscErrorCode ContactIsOver(Contact *contact, MPI_Comm comm);
+/* Collective. The run is over, until `least` is freed, and the contact points are those that it ends with. force
+ * (n_bodies): the largest that stress asks of a point of each body on this rank, N. */
+PetscErrorCode ContactIsOver(Contact *contact, const NodalScene *scene, const PetscReal *force);
 /* What its owner keeps of it. */
 static inline PetscReal *contact_kept_of(const Contact *contact, const Points *points, const ContactPoint *c)
 {

@@ -93,7 +93,7 @@ static PetscErrorCode JoinAtRigid(const Model *m, MeetKind meet, PetscInt *joine
   for (PetscInt b = 0; b < n; ++b) {
     PetscCall(BodyTouches(m, b, touched));
     for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
-      if (contact_rigid(s, c) && meet_as_one(meet, c) && contact_bears(s, c) && touched[s->node[c->first]] != 0)
+      if (contact_rigid(s, c) && meet_as_one(meet, c) && contact_bears(c) && touched[s->node[c->first]] != 0)
         at[c->wall * n + b] = 1;
   }
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, at, (PetscMPIInt)(m->c->n_walls * n), MPIU_INT, MPI_MAX, m->comm));
@@ -114,7 +114,7 @@ static PetscErrorCode JoinMeeting(const Model *m, MeetKind meet, PetscInt *joine
   PetscFunctionBeginUser;
   if (!s || meet == MEET_NONE) PetscFunctionReturn(0);
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (c->wall < s->n_walls || !meet_as_one(meet, c) || !contact_bears(s, c)) continue;
+    if (c->wall < s->n_walls || !meet_as_one(meet, c) || !contact_bears(c)) continue;
     char *const *between = m->c->interfaces[c->wall - s->n_walls].between;
     join(n, case_body(m->c, between[0]), case_body(m->c, between[1]), joined);
   }
@@ -317,6 +317,21 @@ PetscErrorCode CheckHeld(Model *m, PetscBool arrived, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+/* Beside the forces inside of each body those of walls and others that it has come off are round-off, however many of
+ * them there are. */
+static PetscErrorCode TakeLeave(Model *m, const NodalScene *scene)
+{
+  PetscReal *force;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscCalloc1(m->c->n_bodies, &force));
+  for (PetscInt p = 0; p < m->points->n; ++p)
+    force[m->points->body[p]] = PetscMax(force[m->points->body[p]], stress_force(m, p));
+  PetscCall(ContactIsOver(m->contact, scene, force));
+  PetscCall(PetscFree(force));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelWarnLoose(Model *m, Diag *diag)
 {
   const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
@@ -325,13 +340,12 @@ PetscErrorCode ModelWarnLoose(Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   if (!m->contact || m->c->analysis.type != ANALYSIS_STATIC || !m->step) PetscFunctionReturn(0);
-  Contact *contact = m->contact;
   if (holds && !m->unheld.dof) PetscFunctionReturn(0); /* no step was left to take */
   PetscCall(ModelInitialise(m));
   PetscCall(NodalForcesBegin(&m->forces, &scene));
-  PetscCall(ContactIsOver(contact, m->comm));
+  PetscCall(TakeLeave(m, &scene));
   PetscCall(TellLoose(m, END, &told, diag));
   if (!told && !holds) PetscCall(TellLines(m, END, diag));
-  contact->least = 0;
+  PetscCall(PetscFree(m->contact->least));
   PetscFunctionReturn(0);
 }
