@@ -88,8 +88,11 @@ PetscErrorCode LackOfBalance(Model *model, const AtRest *at, PetscReal *lack);
 PetscReal stress_force(const Model *model, PetscInt p);
 /* Collective. While it is sought: how much is lacking, and forces that hold what is to be taken away later. */
 PetscErrorCode EquilibriumPrepare(Model *model, StepProblem *problem);
-/* Acceleration now from the balance of momentum with lumped mass, so that a body in free fall
- * falls from the first step on. */
+/* step/prepare.c. Velocity and acceleration, n_nodes x dim in the frames, with which the parabola through the middle
+ * and the end of what is prescribed for the next dt begins; 0 at other dofs. */
+PetscErrorCode PrescribedStart(const Model *model, PetscReal dt, PetscReal *v, PetscReal *a);
+/* Acceleration now from the balance of momentum, so that a body in free fall falls from the first step on; of what is
+ * prescribed that with which the first step begins. */
 PetscErrorCode InitialAcceleration(Model *model);
 /* Points' += the field of nodes'. */
 void accelerate_points(const Model *model, const PetscReal *a);

@@ -163,6 +163,14 @@ void wall_motion(const Walls *walls, PetscInt k, PetscReal t0, PetscReal t1, con
   frame_increment(walls->c, walls->c->walls + k, t0, t1, at, increment);
 }
 
+void wall_velocity(const Walls *walls, PetscInt k, PetscReal t, PetscReal glance, const PetscReal *x, PetscReal v[3])
+{
+  PetscReal half[3], whole[3];
+  wall_motion(walls, k, t, t + glance / 2, x, half);
+  wall_motion(walls, k, t, t + glance, x, whole);
+  for (int d = 0; d < 3; ++d) v[d] = (4 * half[d] - whole[d]) / glance;
+}
+
 /* Of a wall that moves the box around the corners of its own one. */
 void wall_bounds(const Walls *walls, PetscInt k, PetscReal t, PetscReal min[3], PetscReal max[3])
 {

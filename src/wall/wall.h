@@ -62,6 +62,9 @@ int wall_side(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x);
 /* What the wall's matter that is at x at t0 moves by until t1, m. */
 void wall_motion(const Walls *walls, PetscInt k, PetscReal t0, PetscReal t1, const PetscReal *x,
                  PetscReal increment[3]);
+/* Velocity at t of its matter that is at x then, by the way of the next `glance` s, or, < 0, of the last ones: exact
+ * where its acceleration is constant in these. */
+void wall_velocity(const Walls *walls, PetscInt k, PetscReal t, PetscReal glance, const PetscReal *x, PetscReal v[3]);
 /* Wall k, which has mass, is where x = R X + T of what stood at X at the start, whatever time is asked for. */
 void wall_put(Walls *walls, PetscInt k, const PetscReal R[9], const PetscReal T[3]);
 

@@ -67,6 +67,7 @@ static void project(Model *m, PetscBool whole, PetscReal *v, ContactSum *sum)
                                 .motion = v,
                                 .given = given,
                                 .du = m->nodes->du,
+                                .glance = 1e-4,
                                 .rate = 1e3};
   CALL(ContactProject(m->contact, &motion, sum));
   CALL(PetscFree(given));

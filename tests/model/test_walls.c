@@ -172,6 +172,55 @@ static void test_lifts(void **state)
   }
 }
 
+#define RISE 100.0 /* m/s2, of a floor that lifts the block from rest on */
+
+/* What the floor bears in the first steps of the block under a gravity of 10 m/s2 beside it: as it rests, or rises with
+ * less gravity. held: the floor is a boundary. */
+static void bear(const Block *r, PetscBool held, PetscBool rises, PetscInt steps, PetscReal *force)
+{
+  Bench b;
+  WallSpec wall;
+  const int up = up_of(r);
+  MotionSpec lift = {.kind = MOTION_VELOCITY, .component = {1, 1, 1}};
+  lift.value[up] = RISE;
+  lift.amplitude = (Amplitude){.n = 2, .time = (PetscReal[]){0, 1}, .value = (PetscReal[]){0, 1}};
+  CALL(ModelDestroy((Model *[]){standing(&b, r, 0, PETSC_TRUE, &wall)}));
+  b.c.gravity[up] = rises ? RISE - 10 : -10;
+  wall.n_motions = rises;
+  wall.motions = &lift;
+  if (held) b.c.n_walls = 0;
+  MotionSpec *floor = held ? bench_motion(&b, up, 0.5, rises ? MOTION_VELOCITY : MOTION_FIXED, 1 << up) : &lift;
+  floor->value[up] = RISE;
+  floor->amplitude = lift.amplitude;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  const MeasureSpec reaction = {.kind = "reaction", .component = up};
+  for (PetscInt s = 0; s < steps; ++s) {
+    model_step(m, 5e-3);
+    if (held) CALL(ModelMeasure(m, &reaction, 0, force + s));
+    else force[s] = measure(m, "wall_force", NULL, up);
+  }
+  CALL(ModelDestroy(&m));
+}
+
+/* A floor that accelerates from the start on bears what one does that stands, under as much more gravity. */
+static void test_rises(void **state)
+{
+  static const Block blocks[] = {
+    {"fem", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"fem", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_TRUE, PETSC_FALSE, 0},
+    {"fem", "cell", CELL_QUADRILATERAL, 0, "bossak", "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"gmm", "lme", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+  };
+  PetscReal rests[3], rises[3];
+  (void)state;
+  for (int held = 0; held < 2; ++held)
+    EACH_OF (k, blocks) {
+      bear(&blocks[k], (PetscBool)held, PETSC_FALSE, 3, rests);
+      bear(&blocks[k], (PetscBool)held, PETSC_TRUE, 3, rises);
+      for (int s = 0; s < 3; ++s) CHECK_CLOSE(rises[s], rests[s], 1e-5 * 5000);
+    }
+}
+
 /* Steeper friction than the slope: the block stays where it is, in statics. The floor bears its weight. */
 static void rest(const Block *r)
 {
@@ -395,6 +444,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(test_slides), cmocka_unit_test(test_lifts),   cmocka_unit_test(test_rests),
     cmocka_unit_test(test_flows),  cmocka_unit_test(test_through), cmocka_unit_test(test_dent),
     cmocka_unit_test(test_smooth), cmocka_unit_test(test_narrow),  cmocka_unit_test(test_astride),
+    cmocka_unit_test(test_rises),
   };
   return run_model_tests_in_turns(argc, argv, tests);
 }

@@ -33,8 +33,8 @@ static PetscErrorCode TakeGiven(const Model *m, const PetscReal *a, MassSolve *c
 }
 
 /* The same by the mass matrix that the steps have. Else nodes that go on would swing against each other, and the first
- * step would lose energy. rest: those that are given are 0. */
-static PetscErrorCode AccelerateByMatrix(const Model *m, PetscBool rest, PetscReal *left, PetscReal *a)
+ * step would lose energy. */
+static PetscErrorCode AccelerateByMatrix(const Model *m, PetscReal *left, PetscReal *a)
 {
   const PetscInt dim = m->dim;
   PetscReal enough[MOTIONS];
@@ -48,7 +48,7 @@ static PetscErrorCode AccelerateByMatrix(const Model *m, PetscBool rest, PetscRe
     c.lack[at] = left[i];
     if (m->boundary->fixed[i]) c.inverse[at] = 0;
   }
-  if (!rest) PetscCall(TakeGiven(m, a, &c));
+  PetscCall(TakeGiven(m, a, &c));
   PetscCall(MassLack(&c, enough));
   enough[ACCELERATION] *= PetscSqr(BALANCED);
   PetscCall(MassSolveRun(&c, enough, MOST_SWEEPS));
@@ -116,12 +116,12 @@ static PetscErrorCode TellLack(Model *m)
   PetscFunctionReturn(0);
 }
 
-/* a, in: of held dofs; all of it then, and in n->force what these lack. In the frames. */
-static PetscErrorCode Accelerate(Model *m, PetscBool rest, PetscReal *a)
+/* a, in: of held dofs; all of it then, and in n->force what these lack. In the frames. first: before the first step. */
+static PetscErrorCode Accelerate(Model *m, PetscBool first, PetscReal *a)
 {
   PetscFunctionBeginUser;
-  if (m->method->restores_grid || (m->method->clouds && rest)) accelerate_lumped(m, m->nodes->force, a);
-  else PetscCall(AccelerateByMatrix(m, rest, m->nodes->force, a));
+  if (m->method->restores_grid || (m->method->clouds && first)) accelerate_lumped(m, m->nodes->force, a);
+  else PetscCall(AccelerateByMatrix(m, m->nodes->force, a));
   PetscFunctionReturn(0);
 }
 
@@ -157,11 +157,14 @@ PetscErrorCode InitialAcceleration(Model *m)
 {
   NodalFields *n = m->nodes;
   const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
+  PetscReal *v;
 
   PetscFunctionBeginUser;
   PetscCall(Unbalanced(m, PETSC_FALSE));
   PetscCall(TellLack(m));
-  PetscCall(PetscArrayzero(n->a, dofs));
+  PetscCall(PetscMalloc1(dofs, &v));
+  PetscCall(PrescribedStart(m, m->control.next, v, n->a));
+  PetscCall(PetscFree(v));
   PetscCall(Accelerate(m, PETSC_TRUE, n->a));
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i)
     n->held[i] = n->rate[i] = m->boundary->fixed[i] ? -n->force[i] : 0;

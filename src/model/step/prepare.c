@@ -74,58 +74,49 @@ PetscErrorCode PrepareUnknowns(Model *m, StepStart *start, StepReport *report)
 /* Of the larger speed: what is prescribed jumps by more, and not by what Newmark's formulas are off. */
 #define JUMP 1e-2
 
-/* Velocity and acceleration with which the parabola through the middle and the end of what is prescribed begins. */
-static PetscErrorCode PrescribedStart(const Model *m, PetscReal dt, PetscReal *v, PetscReal *a)
+PetscErrorCode PrescribedStart(const Model *m, PetscReal dt, PetscReal *v, PetscReal *a)
 {
-  PetscReal *half;
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  PetscReal *half, *whole;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(m->grid->n_nodes * m->dim, &half));
+  PetscCall(PetscCalloc2(dofs, &half, dofs, &whole));
   boundary_increments(m->boundary, m->grid, m->time, m->time + dt / 2, half);
-  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
-    v[i] = (4 * half[i] - m->nodes->prescribed[i]) / dt;
-    a[i] = 4 * (m->nodes->prescribed[i] - 2 * half[i]) / PetscSqr(dt);
+  boundary_increments(m->boundary, m->grid, m->time, m->time + dt, whole);
+  for (PetscInt i = 0; i < dofs; ++i) {
+    v[i] = (4 * half[i] - whole[i]) / dt;
+    a[i] = 4 * (whole[i] - 2 * half[i]) / PetscSqr(dt);
   }
-  PetscCall(PetscFree(half));
+  PetscCall(PetscFree2(half, whole));
   PetscFunctionReturn(0);
 }
 
-/* A mesh that moves with the body keeps its own history, but where what is prescribed jumps, which would ring for ever:
- * there it goes on as the parabola of what is prescribed. */
-static PetscErrorCode SetJumps(Model *m, PetscReal dt)
+/* What is prescribed moves so from the start of the step on: as the parabola through the middle and the end of it does.
+ * Where the grid is restored a node's velocity comes from the points that hit it, which would ring for ever in
+ * Newmark's formulas. A mesh that moves with the body keeps its own history, but where what is prescribed jumps (anew:
+ * everywhere), which would ring likewise. */
+static PetscErrorCode StartPrescribed(Model *m, PetscReal dt, PetscBool anew)
 {
   NodalFields *n = m->nodes;
-  PetscReal *v, *a, *motion[] = {n->v, n->a};
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  const PetscBool kept = (PetscBool)(anew && m->c->analysis.keep_velocity);
+  PetscReal *v, *a, *motion[] = {n->v, n->a, n->v_points};
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(m->grid->n_nodes * m->dim, &v, m->grid->n_nodes * m->dim, &a));
+  PetscCall(PetscMalloc2(dofs, &v, dofs, &a));
   PetscCall(PrescribedStart(m, dt, v, a));
-  for (int k = 0; k < 2; ++k) frames_turn(&m->boundary->frames, m->dim, motion[k]);
-  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
+  for (int k = 0; k < 3; ++k) frames_turn(&m->boundary->frames, m->dim, motion[k]);
+  for (PetscInt i = 0; i < dofs; ++i) {
+    const PetscReal fastest = PetscMax(PetscAbsReal(v[i]), PetscAbsReal(n->v[i]));
     if (!m->boundary->fixed[i] || !n->fixed[i]) continue;
-    if (PetscAbsReal(v[i] - n->v[i]) <= JUMP * PetscMax(PetscAbsReal(v[i]), PetscAbsReal(n->v[i]))) continue;
+    if (!anew && PetscAbsReal(v[i] - n->v[i]) <= JUMP * fastest) continue;
     n->v[i] = v[i];
     n->a[i] = a[i];
+    if (kept) n->v_points[i] = v[i];
   }
-  for (int k = 0; k < 2; ++k) frames_turn(&m->boundary->frames, m->dim, motion[k]);
+  for (int k = 0; k < 3; ++k) frames_turn(&m->boundary->frames, m->dim, motion[k]);
   PetscCall(PetscFree2(v, a));
   PetscFunctionReturn(0);
-}
-
-/* A prescribed node moves as prescribed from the start of the step on: where the grid is restored
- * its velocity comes from the points that hit it, which would ring for ever in Newmark's formulas. */
-static void set_boundary_kinematics(Model *m, PetscReal dt)
-{
-  NodalFields *n = m->nodes;
-  PetscReal *motion[] = {n->v, n->a, n->v_points};
-  for (int k = 0; k < 3; ++k) frames_turn(&m->boundary->frames, m->dim, motion[k]);
-  for (PetscInt i = 0; i < m->grid->n_nodes * m->dim; ++i) {
-    if (!m->boundary->fixed[i] || !n->fixed[i]) continue;
-    n->v[i] = n->prescribed[i] / dt;
-    n->a[i] = 0;
-    if (m->c->analysis.keep_velocity) n->v_points[i] = n->v[i];
-  }
-  for (int k = 0; k < 3; ++k) frames_turn(&m->boundary->frames, m->dim, motion[k]);
 }
 
 /* A constraint on displacements lets the velocity of the field ring about the prescribed one, as
@@ -264,8 +255,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
   PetscCall(PetscArrayzero(m->nodes->prescribed, dofs));
   boundary_increments(m->boundary, m->grid, m->time, m->time + passes, m->nodes->prescribed);
   const PetscBool anew = (PetscBool)(m->method->restores_grid || m->step == 0);
-  if (m->scheme->inertia && anew) set_boundary_kinematics(m, dt);
-  else if (m->scheme->inertia) PetscCall(SetJumps(m, dt));
+  if (m->scheme->inertia) PetscCall(StartPrescribed(m, dt, anew));
   if (m->scheme->inertia) PetscCall(HoldConstraints(m, dt));
   if (m->scheme->inertia && m->method->hold && (m->method->restores_grid || !anew))
     PetscCall(m->method->hold(m->space));

@@ -264,7 +264,9 @@ typedef struct {
   PetscReal *motion;   /* n_nodes x dim: velocity or acceleration, changed */
   PetscReal *given;    /* n_nodes x dim: what that takes from the boundary at prescribed dofs is added, on owners */
   const PetscReal *du; /* increments of the step */
-  PetscReal rate;      /* times `swept` (work: `passes`) it is the velocity of the wall */
+  PetscReal time;      /* now, s: walls that go as they are told have their velocity of this instant, */
+  PetscReal glance;    /* as the next so many s, or, < 0, the last ones, show it */
+  PetscReal rate;      /* times an increment of the step it is a mean velocity */
   PetscBool pulls;     /* may the wall pull? Else only what moves into it is stopped */
   PetscBool start;     /* of those in contact before the step, or of those in contact after it? */
 } ContactMotion;

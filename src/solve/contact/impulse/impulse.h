@@ -14,6 +14,8 @@ typedef struct {
   unsigned char *held;      /* 0: not at all, 1: along the normal, 3: in all directions */
   PetscInt n_held, *list;   /* contact points that are held: often a third of those that are near */
   PetscInt rounds;          /* how often p has been sought */
+  PetscReal *told;          /* 3 per contact point: velocity of a wall that goes as it is told, but for what nodes that
+                             * are held let pass, m/s */
   PetscReal *arm;           /* 3 per contact point: against the centre of a wall with mass */
   PetscReal *push, *answer; /* RIGID per wall with mass: momentum, and what it changes */
   PetscReal *nodes;         /* n_nodes x dim: changes of motion; zero but for these: */

@@ -11,15 +11,27 @@
 
 #define MOST_LET_GO 8 /* times that points are let go that would pull */
 
+/* Of a wall that goes as it is told at this instant, at the place x of contact point k. Nodes that are held let pass of
+ * its way what they do in all of the step. */
+static void take_told(const Projection *w, PetscInt k, const PetscReal x[3], PetscReal v[3])
+{
+  const ContactPoint *c = w->s->point + k;
+  PetscReal let[3];
+  if (c->wall >= w->s->n_walls) return; /* of bodies the nodes tell it */
+  wall_velocity(w->s->walls, c->wall, w->m->time, w->m->glance, x, v);
+  (void)contact_let_pass(c, c->swept, let);
+  for (int d = 0; d < 3; ++d) v[d] -= w->m->rate * let[d];
+}
+
 /* Velocity of the wall there, now, as far as it does not pass nodes that are held. */
-static void wall_velocity(const Projection *w, PetscInt k, PetscReal v[3])
+static void velocity_of_wall(const Projection *w, PetscInt k, PetscReal v[3])
 {
   const ContactPoint *c = w->s->point + k;
   const RigidWall *b = contact_rigid(w->s, c);
   PetscReal way[3], let[3];
-  if (b) rigid_velocity(b, w->arm + 3 * k, v);
-  else
-    for (int d = 0; d < 3; ++d) v[d] = w->m->rate * c->swept[d];
+  for (int d = 0; d < 3; ++d) v[d] = w->told[3 * k + d];
+  if (!b) return;
+  rigid_velocity(b, w->arm + 3 * k, v);
   for (int d = 0; d < 3; ++d) way[d] = v[d] / w->m->rate;
   (void)contact_let_pass(c, way, let);
   for (int d = 0; d < 3; ++d) v[d] -= w->m->rate * let[d];
@@ -57,7 +69,7 @@ static void slip_of(const Projection *w, PetscInt k, PetscReal v[3])
 {
   const ContactPoint *c = w->s->point + k;
   PetscReal along = 0, own[3];
-  wall_velocity(w, k, own);
+  velocity_of_wall(w, k, own);
   v[0] = v[1] = v[2] = 0;
   for (PetscInt e = c->first; e < c->first + c->n; ++e)
     for (PetscInt d = 0; d < w->s->dim; ++d) v[d] += w->s->N[e] * w->m->motion[w->s->node[e] * w->s->dim + d];
@@ -154,9 +166,8 @@ static PetscReal driven(const Projection *w)
 {
   PetscReal sum = 0;
   for (PetscInt j = 0; j < w->n_held; ++j) {
-    const ContactPoint *c = w->s->point + w->list[j];
-    if (c->wall >= w->s->n_walls || contact_rigid(w->s, c)) continue;
-    for (int d = 0; d < 3; ++d) sum += w->m->rate * (c->passes[d] - c->let[d]) * w->p[3 * w->list[j] + d];
+    const PetscInt k = w->list[j];
+    sum += impulse_dot(3, w->told + 3 * k, w->p + 3 * k);
   }
   return sum;
 }
@@ -172,7 +183,7 @@ static void lack_of(const Projection *w, PetscInt k, PetscReal lack[3])
 {
   PetscReal v[3];
   impulse_gather(w, w->m->motion, k, v);
-  wall_velocity(w, k, lack);
+  velocity_of_wall(w, k, lack);
   impulse_hold(w, k, lack);
   for (int d = 0; d < 3; ++d) lack[d] -= v[d];
 }
@@ -203,7 +214,8 @@ static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projectio
 
   PetscFunctionBeginUser;
   *w = (Projection){.s = s, .m = m};
-  PetscCall(PetscCalloc5(3 * s->n, &w->p, 3 * s->n, &w->lack, s->n, &w->own, s->n, &w->held, s->n, &w->list));
+  PetscCall(PetscCalloc6(3 * s->n, &w->p, 3 * s->n, &w->lack, 3 * s->n, &w->told, s->n, &w->own, s->n, &w->held, s->n,
+                         &w->list));
   PetscCall(
     PetscCalloc3(s->n_rigid ? 3 * s->n : 0, &w->arm, RIGID * s->n_rigid, &w->push, RIGID * s->n_rigid, &w->answer));
   for (PetscInt k = 0; k < s->n; ++k) {
@@ -212,6 +224,7 @@ static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projectio
     PetscReal x[3];
     contact_place(s, c, m->du, m->start ? 0 : 1, x);
     if (b) rigid_arm(b, m->start, x, w->arm + 3 * k);
+    else take_told(w, k, x, w->told + 3 * k);
     if (b) w->own[k] += 1 / b->body.mass;
     w->held[k] = held_of(c, m);
     lack_of(w, k, w->lack + 3 * k);
@@ -228,7 +241,7 @@ static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projectio
 static PetscErrorCode Destroy(Projection *w)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscFree5(w->p, w->lack, w->own, w->held, w->list));
+  PetscCall(PetscFree6(w->p, w->lack, w->told, w->own, w->held, w->list));
   PetscCall(PetscFree3(w->arm, w->push, w->answer));
   PetscCall(PetscFree(w->nodes));
   PetscCall(PetscFree(w->moved));
