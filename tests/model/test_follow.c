@@ -58,6 +58,23 @@ static void test_energy(void **state)
   }
 }
 
+/* A load of 0 on a surface is none, though nodes under a loaded one follow that others would not. */
+static void test_zero_load(void **state)
+{
+  PetscReal tip[2];
+  (void)state;
+  for (int loaded = 0; loaded < 2; ++loaded) {
+    Bench b;
+    beam(&b, 0.03, 0);
+    if (loaded) bench_traction(&b, 1, 1 + 0.03 * 0.25, "body", 0, 0, 0);
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    model_step(m, 0.1);
+    CALL(ModelMeasure(m, b.measure, 0, &tip[loaded]));
+    CALL(ModelDestroy(&m));
+  }
+  CHECK_CLOSE(tip[1], tip[0], 1e-12 * PetscAbsReal(tip[0]));
+}
+
 /* What points see of linear fields: sum N = 1, sum N x_I = x_p, sum dN = 0, sum x_I dN = 1. */
 static void check_linear(const Model *m)
 {
@@ -119,6 +136,7 @@ static void test_linear(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_energy), cmocka_unit_test(test_linear)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_energy), cmocka_unit_test(test_zero_load),
+                                     cmocka_unit_test(test_linear)};
   return run_model_tests(argc, argv, tests);
 }

@@ -162,6 +162,13 @@ PetscErrorCode DiscretisationCarry(Discretisation *s, const BasisInput *in)
   PetscFunctionReturn(0);
 }
 
+/* A load of 0 pushes nothing, whatever its factors: what it stands on is as free as any other surface. */
+static PetscBool may_push(const Loads *loads, PetscInt carrier)
+{
+  const PetscReal *value = loads->c->loads[loads->carriers->body[carrier]].value;
+  return (PetscBool)(value[0] != 0 || value[1] != 0 || value[2] != 0);
+}
+
 PetscErrorCode ExtensionLoaded(const Discretisation *s)
 {
   Extension *e = s->extension;
@@ -170,7 +177,11 @@ PetscErrorCode ExtensionLoaded(const Discretisation *s)
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(e->loaded, s->grid->n_nodes));
   if (!s->basis->carry) PetscFunctionReturn(0);
-  for (PetscInt i = 0; w->n_groups && i < w->node_start[w->n_groups]; ++i) e->loaded[w->node[i]] = 1;
+  for (PetscInt g = 0; g < w->n_groups; ++g) {
+    PetscBool push = PETSC_FALSE;
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) push |= may_push(s->loads, p);
+    for (PetscInt i = w->node_start[g]; push && i < w->node_start[g + 1]; ++i) e->loaded[w->node[i]] = 1;
+  }
   PetscCall(GridSumToOwners(s->grid, 1, e->loaded));
   PetscCall(GridToGhosts(s->grid, 1, e->loaded));
   PetscFunctionReturn(0);
