@@ -65,6 +65,17 @@ static int side_of(const Face *face, const PetscReal *x, const WallPlace *place)
   return cosine < -ALONG && vector_dot(face->normal, x) < face->offset ? 1 : -1;
 }
 
+/* Where point p is nearest to wall k within `within`, m. What springs of explicit dynamics have let in stands beyond
+ * the side that it rests on, and is on that side all the same. */
+static PetscBool find_place(const Model *m, PetscInt k, PetscInt p, PetscReal within, WallPlace *place)
+{
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  const PetscReal *at = point_real(m->points, POINT_X, p);
+  const PetscReal x[3] = {at[0], at[1], m->dim == 3 ? at[2] : 0};
+  const int came = contact_side(m->contact, &scene, p, k);
+  return wall_near(m->walls, k, m->time, x, within, came == wall_side(m->walls, k, m->time, x) ? 0 : came, place);
+}
+
 static PetscBool sees_any(const Support *w, PetscInt g, const Face *face)
 {
   for (PetscInt i = w->node_start[g]; i < w->node_start[g + 1]; ++i)
@@ -78,10 +89,9 @@ static void weigh_point(const Model *m, PetscInt k, PetscInt g, PetscInt p, Pets
 {
   const Support *w = m->space->support;
   const PetscInt *node = w->node + w->node_start[g], kind = kinds > 1 ? m->points->body[p] : 0;
-  const PetscReal *N = support_N(w, g, p), *at = point_real(m->points, POINT_X, p);
-  const PetscReal x[3] = {at[0], at[1], m->dim == 3 ? at[2] : 0};
+  const PetscReal *N = support_N(w, g, p), *x = point_real(m->points, POINT_X, p);
   WallPlace place;
-  if (!wall_near(m->walls, k, m->time, x, 2 * reach, 0, &place)) return;
+  if (!find_place(m, k, p, 2 * reach, &place)) return;
   for (PetscInt i = 0; i < support_nodes(w, g); ++i) {
     const int side = face[node[i]].near ? side_of(face + node[i], x, &place) : -1;
     if (side >= 0) mass[2 * (node[i] * kinds + kind) + side] += m->points->real[POINT_MASS][p] * N[i];
