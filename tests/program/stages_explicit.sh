@@ -72,6 +72,25 @@ falls 1e7
 expect "explicit, then statics" 0 "$talus" run block.yaml --out follows --set materials.rubber.young=1e5 \
   --set 'analysis={type: explicit, end: 0.4, step: 0.02, damping: 20}' --set 'stages=[{name: falls}, {name: rests, analysis: {type: static, steps: 1, damping: 0}}]'
 says err.txt "of a cell deep in wall 'floor'" "in the stages that follow, too"
+# By more than half a layer of points, too: points stand in the floor, beyond a line, in the other body, and stay there in
+# the stages that follow (the weight of a body at rest became 3 to 40 times itself, and its top moved by 8 mm).
+sed -e 's/contact: friction, friction: 0.5/contact: frictionless/' -e '/^stages:/,$d' -e 's/young: 1e6/young: 2e4/' block.yaml >deep.yaml
+cat >>deep.yaml <<'END'
+stages:
+  - {name: falls, analysis: {type: explicit, end: 1.2, step: 0.02, damping: 12}}
+  - {name: moves, analysis: {type: dynamic, end: 0.05, step: 0.005, damping: 0}}
+END
+sed -e 's/cell: {}/gimp: {}/' -e 's/half-space: {point: \[0, 0.5\], normal: \[0, 1\]}/line: [[0.25, 0.5], [1.75, 0.5]]/' deep.yaml >line.yaml
+sed -e 's/frictionless/friction, friction: 0.5/' -e 's/  - {name: moves.*/  - {name: rests, analysis: {type: static, steps: 2, damping: 0}}/' deep.yaml >statics.yaml
+sed -e 's/^bodies:/&\n  - {name: base, shape: {box: {min: [0.25, 0], max: [1.75, 0.5]}}, points_per_cell: 4, material: hard}/' \
+  -e 's/^materials:/&\n  hard: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}/' \
+  -e 's/^walls:/boundary: [{name: ground, on: {y: 0}, fix: [x, y]}]\ninterfaces:/' -e 's/wall_force: y, of: {wall: floor}/interface_force: y, of: {interface: floor}/' \
+  -e 's/shape: {half-space: .*, contact/between: [block, base], contact/' deep.yaml >bodies.yaml
+for case in deep line statics bodies; do
+  expect "$case" 0 "$talus" run $case.yaml --out $case
+  awk -F, '$3 == 1 { top = $4; push = $5 } $3 == 2 { ++n; if ($5 / push < 0.95 || $5 / push > 1.05 || $4 / top < 0.995 || $4 / top > 1.005 || $6 > 1) { bad = 1; print } }
+    END { exit bad || push < 9500 || push > 10100 || n < 2 }' $case/history.csv >out.txt || fail "$case: what has sunk in is thrown out"
+done
 # A bar of two by two cells in space, pulled at its end at once: it swings between 0 and twice the static way, and loses
 # some energy between points and grid, but makes none.
 cat >pulled.yaml <<'END'

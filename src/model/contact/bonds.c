@@ -15,11 +15,14 @@ void contact_bond(const Model *m, PetscInt p, const PetscReal normal[3], PetscRe
 {
   const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
   if ((int)(was[KEPT_STATE] + 0.5) != CONTACT_OPEN) return;
+  const PetscReal reach = contact_reach_left(&scene, p, was, normal, gap);
   /* What a spring has left pressed in stands at the surface: as the law was. */
-  const PetscReal reach = contact_reach_left(&scene, p, CONTACT_FRICTIONLESS, was, normal, gap);
-  if (gap - reach > CONTACT_HAIR * m->grid->smallest) return;
-  kept[KEPT_STATE] = CONTACT_SLIDES; /* as what was pressed: the step stops it, and no impulse before that */
-  kept[KEPT_REACH] = PetscMax(reach, gap);
+  const PetscReal behind = contact_behind_left(&scene, CONTACT_FRICTIONLESS, was, gap - reach);
+  if (gap + behind - reach > CONTACT_HAIR * m->grid->smallest) return;
+  const PetscReal let_in = contact_let_in(&scene, was, behind) ? CONTACT_LET_IN : 0;
+  kept[KEPT_STATE] = CONTACT_SLIDES + let_in; /* as what was pressed: the step stops it, and no impulse before that */
+  kept[KEPT_REACH] = PetscMax(reach, gap + behind);
+  kept[KEPT_PASSED(m->dim)] = behind;
   for (PetscInt d = 0; d < m->dim; ++d) kept[KEPT_FORCE + d] = 0;
   kept[KEPT_STAYS(m->dim)] = 0;
   contact_keep_normal(kept, m->dim, contact_sides(m->c), normal);

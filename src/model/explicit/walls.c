@@ -21,12 +21,15 @@
 
 static PetscReal *kept_of(const Model *m, const ContactPoint *c) { return contact_kept_of(m->contact, m->points, c); }
 
-/* Another scheme has left a force and no gap: the surface is where the spring has that force. */
+/* Another scheme, or another stiffness, has left a force and another gap: the surface is where the spring has that
+ * force. What springs had let in before stands so much nearer to it. */
 static void take_over(ContactPoint *c)
 {
   const PetscReal pressure = vector_dot(c->last, c->normal), off = pressure / c->law.penalty + c->open;
+  const PetscReal let_in = PetscMin(off, PetscMax(0, c->behind));
   if (c->before == CONTACT_OPEN || (pressure <= 0 && c->law.kind != CONTACT_BONDED)) return;
-  c->reach += off;
+  c->behind -= let_in;
+  c->reach += off - let_in;
   c->open -= off;
 }
 

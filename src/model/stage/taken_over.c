@@ -81,8 +81,9 @@ static void press(const Model *m, ContactPoint *c, int sign, const PetscReal *la
 static void keep(const Model *m, const ContactPoint *c)
 {
   PetscReal *kept = contact_kept_of(m->contact, m->points, c);
-  kept[KEPT_STATE] = (PetscReal)c->before;
+  kept[KEPT_STATE] = (PetscReal)c->before + (c->let_in ? CONTACT_LET_IN : 0);
   kept[KEPT_REACH] = c->reach + c->open;
+  kept[KEPT_PASSED(m->dim)] = c->behind;
   kept[KEPT_STAYS(m->dim)] = c->stays;
   for (PetscInt d = 0; d < m->dim; ++d) kept[KEPT_FORCE + d] = c->last[d];
   contact_keep_normal(kept, m->dim, m->contact->sides, c->facing);

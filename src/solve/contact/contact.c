@@ -204,6 +204,14 @@ static PetscReal share_taken_back(const Contact *s, const ContactPoint *c)
   return PetscMin(1, PetscSqrtReal(PetscMax(0, square - across * across)) / (TAKEN_BACK * s->length));
 }
 
+/* What has been let in may stand beyond an open wall: it keeps the side that it came from, as in explicit steps. */
+static void keep_side(const ContactPoint *c, PetscInt dim, PetscReal *kept)
+{
+  if (!c->side || !c->let_in || c->gap == PETSC_MAX_REAL) return;
+  kept[KEPT_SIDE(dim)] = c->side;
+  kept[KEPT_DISTANCE(dim)] = c->gap - c->passed + kept[KEPT_REACH];
+}
+
 /* Carriers keep what acted on them. */
 static PetscErrorCode Commit(void *data, const NodalScene *scene)
 {
@@ -216,7 +224,7 @@ static PetscErrorCode Commit(void *data, const NodalScene *scene)
                            scene->points->n * s->n_partners * contact_kept_partner(dim, s->sides)));
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     PetscReal *kept = contact_kept_of(s, scene->points, c);
-    kept[KEPT_STATE] = (PetscReal)c->state;
+    kept[KEPT_STATE] = (PetscReal)c->state + (c->let_in ? CONTACT_LET_IN : 0);
     kept[KEPT_REACH] = reach_at_end(s, c, scene);
     contact_force(c, f);
     for (PetscInt d = 0; d < dim && c->state != CONTACT_OPEN; ++d) kept[KEPT_FORCE + d] = s->share.mean * f[d];
@@ -224,6 +232,7 @@ static PetscErrorCode Commit(void *data, const NodalScene *scene)
     kept[KEPT_LEAPT(dim)] = c->leapt;
     kept[KEPT_TAKES(dim)] = scene->stays ? 0 : share_taken_back(s, c);
     kept[KEPT_PASSED(dim)] = c->passed;
+    keep_side(c, dim, kept);
     contact_keep_normal(kept, dim, s->sides, scene->stays ? c->facing : c->normal);
   }
   PetscFunctionReturn(0);

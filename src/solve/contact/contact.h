@@ -47,6 +47,7 @@ typedef struct {
   PetscReal softer;  /* and so much of it a change of shape */
   PetscReal open;    /* gap at the start of the step, m */
   ContactHeld held;
+  PetscBool let_in;         /* does it stand where a spring of explicit dynamics has left it? */
   PetscReal behind, passed; /* by how much the wall has passed it before the step and at the last assembly, m, */
   PetscReal let[3];         /* and what of `swept` held nodes let pass */
   PetscReal own_bond;       /* that the wall bears along itself without pressure, N, */
@@ -165,11 +166,16 @@ PetscReal contact_let_pass(const ContactPoint *c, const PetscReal way[3], PetscR
 void contact_lets(const ContactPoint *c, const PetscReal motion[3], PetscReal let[3]);
 /* Forget what impulses have done in a step, or in a try of it that has failed: a try begins. */
 void contact_again(Contact *contact);
-/* How far the surface is from point p at a distance `gap` from the wall, as the last step has left it, m: a spring of
- * explicit dynamics that held it is gone, and it stands where it stood; what pulled it, too, where it is bonded. A
- * corner that turns with its body is as far ahead as it has come to be. Of what nothing is known, as strain has it. */
-PetscReal contact_reach_left(const NodalScene *scene, PetscInt p, ContactKind kind, const PetscReal *kept,
-                             const PetscReal n[3], PetscReal gap);
+/* How far the surface is from point p at a distance `gap` from the wall, as the last step has left it, m. A corner that
+ * turns with its body is as far ahead as it has come to be. Of what nothing is known, as strain has it. */
+PetscReal contact_reach_left(const NodalScene *scene, PetscInt p, const PetscReal *kept, const PetscReal n[3],
+                             PetscReal gap);
+/* By how much the wall has passed a surface that is `gap` from it, as the last step has left it, m: a spring of
+ * explicit dynamics that let it in, in whichever layer of points, is gone, and it stands where it stood; what pulled
+ * it, too, where it is bonded. */
+PetscReal contact_behind_left(const NodalScene *scene, ContactKind kind, const PetscReal *kept, PetscReal gap);
+/* Was it such a spring that the wall passed it by? */
+PetscBool contact_let_in(const NodalScene *scene, const PetscReal *kept, PetscReal behind);
 /* What else the room finds: contact points with nodes, and the surface of a part of a body. */
 PetscErrorCode ContactAdd(Contact *contact, ContactPoint **c);
 PetscErrorCode ContactAddNodes(Contact *contact, ContactPoint *c, PetscInt n);

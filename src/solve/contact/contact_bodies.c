@@ -66,7 +66,7 @@ static PetscErrorCode Carry(Contact *s, ContactPoint *c, const NodeFinder *f, co
     PetscReal change = 0;
     for (PetscInt d = 0; d < s->dim; ++d) {
       const PetscReal way = c->x[d] - p->x[d];
-      change += (carrier->dN[d] + 0.5 * carrier->bend[d] * way) * way;
+      change += (carrier->dN[d] + (c->let_in ? 0 : 0.5 * carrier->bend[d] * way)) * way; /* see take_lead */
     }
     s->node[e] = local_node(f, carrier->node);
     PetscCheck(s->node[e] >= 0, PETSC_COMM_SELF, PETSC_ERR_PLIB, "a body meets another one on an unknown node");
@@ -112,15 +112,16 @@ static PetscErrorCode Meet(Contact *s, const NodalScene *scene, const NodeFinder
   PetscFunctionBeginUser;
   PetscCall(ContactAdd(s, &c));
   c->owner = p->owner, c->wall = partner;
-  c->reach =
-    contact_reach_left(scene, p->owner, scene->c->interfaces[interface].contact, kept, pair->normal, pair->gap);
+  c->reach = contact_reach_left(scene, p->owner, kept, pair->normal, pair->gap);
   c->modulus[0] = p->modulus, c->density[0] = p->density;
   c->stiffer = PetscMax(p->stiffer, pair->other->stiffer);
   c->softer = PetscMin(p->softer, pair->other->softer);
   c->modulus[1] = pair->other->modulus, c->density[1] = pair->other->density;
   contact_take_law(s, scene, c);
   contact_remember(c, s->dim, kept, pair->normal);
-  c->open = pair->gap - c->reach;
+  c->behind = contact_behind_left(scene, c->law.kind, kept, pair->gap - c->reach);
+  c->let_in = contact_let_in(scene, kept, c->behind);
+  c->open = pair->gap - c->reach + c->behind;
   if (scene->c->analysis.type == ANALYSIS_DYNAMIC) go_on_touching(s, scene, kept, c);
   if (contact_passes(s, c, c->open, scene->first)) {
     --s->n;

@@ -209,23 +209,40 @@ static PetscBool turns(const NodalScene *scene, PetscInt p, PetscReal state)
                      !contact_is_strained(scene->points, p, STIFF));
 }
 
-PetscReal contact_reach_left(const NodalScene *scene, PetscInt p, ContactKind kind, const PetscReal *kept,
-                             const PetscReal n[3], PetscReal gap)
+PetscReal contact_reach_left(const NodalScene *scene, PetscInt p, const PetscReal *kept, const PetscReal n[3],
+                             PetscReal gap)
 {
-  const PetscBool sprung = contact_is_sprung(kept[0]) && scene->c->analysis.type != ANALYSIS_EXPLICIT;
-  const PetscReal left = !sprung ? kept[1] : kind == CONTACT_BONDED ? gap : PetscMin(kept[1], gap);
+  const PetscReal left = kept[KEPT_REACH];
   if (left <= 0) return contact_reach_of(scene->points, p, n);
-  return turns(scene, p, kept[0]) ? PetscMax(left, PetscMin(gap, ahead_of(scene->points, p, n))) : left;
+  return turns(scene, p, kept[KEPT_STATE]) ? PetscMax(left, PetscMin(gap, ahead_of(scene->points, p, n))) : left;
+}
+
+static PetscBool lets_go_of_spring(const NodalScene *scene, const PetscReal *kept)
+{
+  return (PetscBool)(contact_is_sprung(kept[KEPT_STATE]) && scene->c->analysis.type != ANALYSIS_EXPLICIT);
+}
+
+PetscReal contact_behind_left(const NodalScene *scene, ContactKind kind, const PetscReal *kept, PetscReal gap)
+{
+  const PetscReal behind = kept[KEPT_PASSED(scene->grid->dim)];
+  if (!lets_go_of_spring(scene, kept)) return behind;
+  return kind == CONTACT_BONDED ? -gap : PetscMax(behind, -gap);
+}
+
+PetscBool contact_let_in(const NodalScene *scene, const PetscReal *kept, PetscReal behind)
+{
+  return (PetscBool)(behind != 0 && (lets_go_of_spring(scene, kept) || contact_is_let_in(kept[KEPT_STATE])));
 }
 
 /* What the functions of the point are `reach` beyond it along -n, more than N there; means over a domain become those
- * over its side. */
+ * over its side, but of what springs have let in, which pushed with straight ones: with others what rests would not be
+ * in balance. */
 static void take_lead(const NodalScene *scene, PetscInt p, PetscInt nn, const PetscReal *dN, const PetscReal n[3],
-                      PetscReal reach, PetscReal *lead)
+                      PetscReal reach, PetscBool let_in, PetscReal *lead)
 {
   const PetscInt dim = scene->grid->dim;
   PetscReal bend[3 * BENDING];
-  const PetscBool bends = scene->bends && scene->bends(scene->bends_context, p, nn, bend);
+  const PetscBool bends = !let_in && scene->bends && scene->bends(scene->bends_context, p, nn, bend);
   for (PetscInt I = 0; I < nn; ++I) {
     lead[I] = 0;
     for (PetscInt d = 0; d < dim; ++d) {
@@ -253,7 +270,7 @@ static PetscBool arrives(const Contact *s, const NodalScene *scene, PetscInt k)
  * and energy one likes (docs/theory.md, section 76). */
 static PetscReal behind_of(const Contact *s, const NodalScene *scene, PetscInt k, const PetscReal *kept, PetscReal gap)
 {
-  const PetscReal behind = kept[KEPT_PASSED(s->dim)];
+  const PetscReal behind = contact_behind_left(scene, scene->c->walls[k].contact, kept, gap);
   if (!scene->moves || kept[KEPT_STATE] != 0 || gap + behind >= 0 || !arrives(s, scene, k)) return behind;
   return -gap;
 }
@@ -271,7 +288,7 @@ static PetscErrorCode MeetSide(Contact *s, const NodalScene *scene, PetscInt g, 
 
   PetscFunctionBeginUser;
   *met = NULL;
-  const PetscReal reach = contact_reach_left(scene, p, scene->c->walls[k].contact, kept, place.normal, place.gap);
+  const PetscReal reach = contact_reach_left(scene, p, kept, place.normal, place.gap);
   const PetscInt nn = support_nodes(scene->support, g), *node = scene->support->node + scene->support->node_start[g];
   const PetscReal *N = support_N(scene->support, g, at), *dN = support_dN(scene->support, g, at, dim);
   PetscCall(ContactAdd(s, &c));
@@ -285,6 +302,7 @@ static PetscErrorCode MeetSide(Contact *s, const NodalScene *scene, PetscInt g, 
   c->edge = is_edge(&place);
   place.gap -= reach;
   c->behind = behind_of(s, scene, k, kept, place.gap);
+  c->let_in = contact_let_in(scene, kept, c->behind);
   place.gap += c->behind;
   if (contact_passes(s, c, place.gap, scene->first)) {
     --s->n;
@@ -297,7 +315,7 @@ static PetscErrorCode MeetSide(Contact *s, const NodalScene *scene, PetscInt g, 
   for (PetscInt d = 0; d < dim; ++d) c->x[d] = x[d] - reach * place.normal[d];
   contact_take_section(s, scene, contact_section(scene, p, place.normal, (PetscReal[]){x[0], c->x[0]}), c);
   if (kept[KEPT_STATE] == 0 && !c->gone) contact_start(scene, c);
-  take_lead(scene, p, nn, dN, place.normal, reach, s->lead + c->first);
+  take_lead(scene, p, nn, dN, place.normal, reach, c->let_in, s->lead + c->first);
   for (PetscInt I = 0; I < nn; ++I) {
     s->node[c->first + I] = node[I];
     s->N[c->first + I] = N[I] + s->lead[c->first + I];

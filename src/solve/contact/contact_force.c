@@ -60,7 +60,7 @@ static PetscBool place_of(const Contact *s, ContactPoint *c, PetscReal t, const 
     for (int d = 0; d < 3; ++d) place->gap += (way[d] - (x[d] - c->x[d])) * place->normal[d];
     return PETSC_TRUE;
   }
-  *place = (WallPlace){.gap = c->open};
+  *place = (WallPlace){.gap = c->open - c->behind}; /* what has passed it counts after that, as before walls */
   for (int d = 0; d < 3; ++d) {
     place->normal[d] = c->normal[d];
     place->gap += way[d] * c->normal[d];

@@ -53,3 +53,8 @@ static inline PetscBool contact_is_sprung(PetscReal state)
 {
   return state - PetscFloorReal(state) > CONTACT_SPRING / 2;
 }
+
+/* Where another scheme goes on from there. */
+#define CONTACT_LET_IN 0.0625
+
+static inline PetscBool contact_is_let_in(PetscReal state) { return state - PetscFloorReal(state) == CONTACT_LET_IN; }
