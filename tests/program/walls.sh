@@ -466,4 +466,27 @@ expect "what came" 0 "$talus" run sheet.yaml --out sheet --quiet
 says err.txt "wall 'sheet' is thinner than nodes reach and parts nothing (seen at t = 0."
 says err.txt "'left' and 'right' on its two sides stick to each other by"
 
+# What springs of explicit dynamics have let into the side that it rests on is on no other side: of a line, a trough. A
+# wedge it goes into by more than what such springs stop, and with no energy that nobody has put in (half of what came).
+cat >ball.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: explicit, end: 0.16, step: 0.01}
+grid: {box: {min: [0, 0], max: [2, 2]}, size: 0.05}
+bodies: [{name: ball, shape: {circle: {centre: [1, 1.0], radius: 0.3}}, points_per_cell: 4, material: rubber, velocity: [0, -2]}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 3e5, poisson: 0.3}}
+measures: {depth: {contact: penetration, of: {wall: w}}, transfer: {energy: transfer}}
+walls: [{name: w, shape: {line: [[0.2, 0.5], [1.8, 0.5]]}}]
+output: {every: end, history: {steps: 1}}
+END
+expect "a ball on a line" 0 "$talus" run ball.yaml --out ball --quiet
+! grep -q "parts nothing" err.txt || fail "$name: it is said to be on both sides"
+! grep -q "on the way" err.txt || fail "$name: tells of a fifth of a cell"
+expect "a ball in a trough" 0 "$talus" run ball.yaml --out trough --quiet --set 'walls=[{name: w, shape: {line: [[0.2, 0.9], [1, 0.5], [1.8, 0.9]]}}]'
+! grep -q "parts nothing" err.txt || fail "$name: it is said to be on both sides"
+expect "a ball on a wedge" 0 "$talus" run ball.yaml --out wedge --quiet --set grid.size=0.04 --set analysis.end=0.4 \
+  --set 'walls=[{name: w, shape: {polygon: [[1, 0.6], [1.4, 0], [0.6, 0]]}}]'
+says err.txt "on the way material was" "cells deep in wall 'w'"
+awk -F, 'NR > 1 && $4 < -1 { bad = 1; print } END { exit bad || NR < 30 }' wedge/history.csv >out.txt || fail "$name: makes energy"
+
 finish

@@ -84,6 +84,7 @@ typedef struct Explicit {
   /* of each wall in the run's step, on this rank: mean force on the material and its torque; work of sliding, J */
   ContactSum *pushed;
   PetscReal *rubbed, friction; /* friction: of all walls */
+  PetscReal *sunk;             /* likewise: how deep material was in it in any substep, m */
   /* walls with mass (heavy.c): bound of the square of the frequencies that they bring, 1/s2; how fast the fastest moves
    * anywhere, m/s; of each, by what its springs are multiplied to keep that bound; work on them without energy of
    * motion when the run's step began, J */

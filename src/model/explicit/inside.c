@@ -44,6 +44,18 @@ static PetscBool is_covered(const Contact *s, const PetscReal *surface, const Co
   return (PetscBool)(shared > BEFORE * sum);
 }
 
+/* Should what covers it go, it begins where it is then: a spring that is pressed in from the start would give energy
+ * that nobody has put in. */
+static void leave_out(ContactPoint *c)
+{
+  const PetscReal gap = c->open - c->behind;
+  c->section = c->bond = c->own_bond = 0;
+  c->inner = PETSC_TRUE;
+  c->behind = PetscMax(0, -gap);
+  c->open = gap + c->behind;
+}
+
+/* What bears already does so on: its spring would lose what it has stored. */
 PetscErrorCode WallsTouchSurface(Model *m, Explicit *e, const NodalScene *scene)
 {
   Contact *s = m->contact;
@@ -52,10 +64,9 @@ PetscErrorCode WallsTouchSurface(Model *m, Explicit *e, const NodalScene *scene)
   if (!s) PetscFunctionReturn(0);
   if (e->begins) PetscCall(Mark(m, e, scene));
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (c->open > 0 || !is_covered(s, e->surface, c)) continue;
+    if (c->before != CONTACT_OPEN || (c->open > 0 && c->behind == 0) || !is_covered(s, e->surface, c)) continue;
     if (contact_depth(scene, c->owner, c->facing) != CONTACT_INSIDE) continue;
-    c->section = c->bond = c->own_bond = 0;
-    c->inner = PETSC_TRUE;
+    leave_out(c);
   }
   PetscFunctionReturn(0);
 }

@@ -94,7 +94,8 @@ PetscErrorCode ExplicitCreate(const Model *m, Explicit **explicit)
   PetscCall(PetscCalloc1(n * dim + 4, &e->straining));
   PetscCall(PetscCalloc3(n, &e->mark, n, &e->bare, m->c->n_loads ? 3 * n * dim : 0, &e->apart));
   PetscCall(PetscMalloc1(n, &e->active));
-  if (m->contact) PetscCall(PetscCalloc2(m->contact->n_partners, &e->pushed, m->contact->n_partners, &e->rubbed));
+  const PetscInt partners = m->contact ? m->contact->n_partners : 0;
+  PetscCall(PetscCalloc3(partners, &e->pushed, partners, &e->rubbed, partners, &e->sunk));
   if (m->contact) PetscCall(PetscMalloc1(m->contact->n_rigid, &e->ease));
   if (m->contact) PetscCall(PetscCalloc2(2 * n, &e->springs, n * m->contact->n_partners * dim, &e->surface));
   PetscCall(PetscMalloc1(n * dim, &e->held));
@@ -117,7 +118,7 @@ PetscErrorCode ExplicitDestroy(Explicit **explicit)
   PetscCall(PetscFree(e->held));
   PetscCall(PetscFree(e->near.point));
   PetscCall(SupportDestroy(&e->near.support));
-  PetscCall(PetscFree2(e->pushed, e->rubbed));
+  PetscCall(PetscFree3(e->pushed, e->rubbed, e->sunk));
   PetscCall(PetscFree(e->ease));
   PetscCall(PetscFree(*explicit));
   PetscFunctionReturn(0);

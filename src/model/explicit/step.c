@@ -156,6 +156,7 @@ static PetscErrorCode Begin(Model *m, PetscReal step, Explicit *e, PetscReal bef
   for (PetscInt k = 0; m->contact && k < m->contact->n_rigid; ++k) e->ease[k] = 1;
   if (m->contact) PetscCall(PetscArrayzero(e->pushed, m->contact->n_partners));
   if (m->contact) PetscCall(PetscArrayzero(e->rubbed, m->contact->n_partners));
+  if (m->contact) PetscCall(PetscArrayzero(e->sunk, m->contact->n_partners));
   PetscCall(PetscArrayzero(m->nodes->reaction, m->grid->n_nodes * m->dim));
   let_go_settle(m, &(TimeWeights){.mean = 1});
   energy_of_points(m, before);

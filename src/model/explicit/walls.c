@@ -207,6 +207,7 @@ void walls_follow(Model *m, Explicit *e)
     const PetscReal first = m->points->real[POINT_REACH][c->owner];
     PetscReal move[3], lead;
     if (c->state == CONTACT_OPEN && !(e->dt > 0)) continue;
+    if (c->state != CONTACT_OPEN) e->sunk[c->wall] = PetscMax(e->sunk[c->wall], -c->gap);
     move_of(m, e, c, move, &lead);
     for (int d = 0; d < 3; ++d) move[d] -= c->swept[d];
     kept[KEPT_STATE] = (PetscReal)c->state + CONTACT_SPRING;
@@ -241,10 +242,12 @@ static PetscErrorCode TakeRates(Model *m)
   PetscFunctionReturn(0);
 }
 
-/* What has gone through open walls. */
-static PetscErrorCode AddCrossed(Contact *s, MPI_Comm comm)
+/* What has gone into walls on the way, and through open ones. */
+static PetscErrorCode AddSunk(Contact *s, PetscReal *sunk, MPI_Comm comm)
 {
   PetscFunctionBeginUser;
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sunk, (PetscMPIInt)s->n_partners, MPIU_REAL, MPI_MAX, comm));
+  for (PetscInt k = 0; k < s->n_partners; ++k) s->sunk[k] = PetscMax(s->sunk[k], sunk[k]);
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, s->crosses, (PetscMPIInt)s->n_partners, MPIU_REAL, MPI_SUM, comm));
   for (PetscInt k = 0; k < s->n_partners; ++k) s->crossed[k] += s->crosses[k];
   PetscCall(PetscArrayzero(s->crosses, s->n_partners));
@@ -278,7 +281,7 @@ PetscErrorCode WallsAccount(Model *m, Explicit *e)
     s->wall[k].area = area[k];
     s->wall[k].deepest = deepest[k];
   }
-  PetscCall(AddCrossed(s, m->comm));
+  PetscCall(AddSunk(s, e->sunk, m->comm));
   PetscCall(TakeRates(m));
   PetscCall(PetscFree2(area, deepest));
   PetscFunctionReturn(0);

@@ -21,7 +21,8 @@ PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **
   PetscCall(RigidCreate(c, walls, diag, &(*contact)->n_rigid, &(*contact)->rigid));
   PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->wall));
   PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->impulse));
-  PetscCall(PetscCalloc2((*contact)->n_partners, &(*contact)->crosses, (*contact)->n_partners, &(*contact)->crossed));
+  PetscCall(PetscCalloc3((*contact)->n_partners, &(*contact)->crosses, (*contact)->n_partners, &(*contact)->crossed,
+                         (*contact)->n_partners, &(*contact)->sunk));
   PetscCall(PetscMalloc1((*contact)->n_partners * c->n_bodies, &(*contact)->divisor));
   for (PetscInt i = 0; i < (*contact)->n_partners * c->n_bodies; ++i) (*contact)->divisor[i] = 1;
   (*contact)->share = (ContactShare){.mean = 1, .asked = 1};
@@ -46,7 +47,7 @@ PetscErrorCode ContactDestroy(Contact **contact)
   PetscCall(PetscFree(s->wall));
   PetscCall(PetscFree(s->rigid));
   PetscCall(PetscFree(s->impulse));
-  PetscCall(PetscFree2(s->crosses, s->crossed));
+  PetscCall(PetscFree3(s->crosses, s->crossed, s->sunk));
   PetscCall(PetscFree(*contact));
   PetscFunctionReturn(0);
 }
@@ -220,6 +221,7 @@ static PetscErrorCode Commit(void *data, const NodalScene *scene)
   PetscReal f[3];
 
   PetscFunctionBeginUser;
+  PetscCall(PetscArrayzero(s->sunk, s->n_partners));
   PetscCall(PetscArrayzero(scene->points->real[POINT_CONTACT],
                            scene->points->n * s->n_partners * contact_kept_partner(dim, s->sides)));
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
@@ -251,6 +253,8 @@ static PetscErrorCode ToTables(const void *data, const NodalScene *scene, Tables
   PetscCall(PetscMemcpy(column->data, s->wall, (size_t)s->n_partners * sizeof *s->wall));
   PetscCall(TableAdd(table, "crossed", NULL, COLUMN_REAL, 1, NULL, &column));
   PetscCall(PetscArraycpy((PetscReal *)column->data, s->crossed, s->n_partners));
+  PetscCall(TableAdd(table, "sunk", NULL, COLUMN_REAL, 1, NULL, &column));
+  PetscCall(PetscArraycpy((PetscReal *)column->data, s->sunk, s->n_partners));
   if (!s->n_rigid) PetscFunctionReturn(0);
   PetscCall(TablesAdd(tables, "rigid_walls", PETSC_TRUE, s->n_rigid, &table));
   PetscCall(TableAdd(table, "state", NULL, COLUMN_REAL, RIGID_NUMBERS, NULL, &column));
@@ -281,6 +285,15 @@ static void rigid_from_tables(Contact *s, const Tables *tables, char reason[256]
   }
 }
 
+/* What only explicit steps of walls count; older states have none of it. */
+static PetscErrorCode CountFromTable(const Table *table, const char *name, PetscReal *count, char reason[256])
+{
+  PetscFunctionBeginUser;
+  const PetscReal *was = !reason[0] && table_has(table, name) ? table_data(table, name, COLUMN_REAL, 1, reason) : NULL;
+  if (was) PetscCall(PetscArraycpy(count, was, table->rows));
+  PetscFunctionReturn(0);
+}
+
 static PetscErrorCode FromTables(void *data, const NodalScene *scene, const Tables *tables, char reason[256])
 {
   Contact *s = data;
@@ -295,9 +308,8 @@ static PetscErrorCode FromTables(void *data, const NodalScene *scene, const Tabl
   const PetscReal *state = table_data(table, "state", COLUMN_REAL, WALL_NUMBERS, reason);
   if (state && table->rows != s->n_partners) snprintf(reason, 256, "walls are others");
   if (state && !reason[0]) PetscCall(PetscMemcpy(s->wall, state, (size_t)s->n_partners * sizeof *s->wall));
-  const PetscReal *crossed =
-    !reason[0] && table_has(table, "crossed") ? table_data(table, "crossed", COLUMN_REAL, 1, reason) : NULL;
-  if (crossed) PetscCall(PetscArraycpy(s->crossed, crossed, s->n_partners));
+  PetscCall(CountFromTable(table, "crossed", s->crossed, reason));
+  PetscCall(CountFromTable(table, "sunk", s->sunk, reason));
   if (state && !reason[0]) rigid_from_tables(s, tables, reason);
   PetscFunctionReturn(0);
 }

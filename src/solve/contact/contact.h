@@ -138,6 +138,7 @@ typedef struct Contact {
   /* of each wall, kg: material that was pressed against one side of an open one and has gone to the other; of this rank
    * and step, and of all so far */
   PetscReal *crosses, *crossed;
+  PetscReal *sunk;  /* of each partner: how deep material was in it in explicit steps before any others, m */
   PetscReal driven; /* work of these where walls move as they are told, J */
 } Contact;
 
