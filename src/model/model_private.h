@@ -94,8 +94,8 @@ PetscErrorCode PrescribedStart(const Model *model, PetscReal dt, PetscReal *v, P
 /* Acceleration now from the balance of momentum, so that a body in free fall falls from the first step on; of what is
  * prescribed that with which the first step begins. */
 PetscErrorCode InitialAcceleration(Model *model);
-/* Points' += the field of nodes'. */
-void accelerate_points(const Model *model, const PetscReal *a);
+/* Points' += the field of nodes', of the bodies for which that is asked; NULL: of all. */
+void accelerate_points(const Model *model, const PetscBool *bodies, const PetscReal *a);
 /* Collective. Accelerations that would balance what acts on nodes now, n_nodes x dim on all copies: held ones, and
  * contact as far as nodes remember it, are as they are. lacks: what such nodes lack, on owners, N; *size: of what
  * acts, N. All along the axes. */

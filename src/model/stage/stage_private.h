@@ -65,7 +65,7 @@ PetscBool accelerations_go_on(const Case *c, const Case *from);
 PetscErrorCode JumpFrom(Model *before, Tables *tables);
 /* Room for that in the next model, before it takes its state; and the jump, when it has. */
 PetscErrorCode JumpExpect(Model *model);
-PetscErrorCode JumpTo(Model *model, const Tables *tables, char reason[256]);
+PetscErrorCode JumpTo(Model *model, const Case *from, const Tables *tables, char reason[256]);
 /* motion/bring.c. Collective. Nodes of fem that bodies come to get the velocities that these bring. */
 PetscErrorCode BodiesBringMotion(Model *model, const Case *from);
 /* Of values of all nodes, those of this rank's nodes that no boundary holds; the others become 0. */

@@ -141,15 +141,17 @@ PetscErrorCode InitialReactions(Model *m)
   PetscFunctionReturn(0);
 }
 
-void accelerate_points(const Model *m, const PetscReal *a)
+void accelerate_points(const Model *m, const PetscBool *bodies, const PetscReal *a)
 {
   const Support *w = m->space->support;
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     const PetscInt nn = support_nodes(w, g), *node = w->node + w->node_start[g];
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      if (bodies && !bodies[m->points->body[p]]) continue;
       for (PetscInt i = 0; i < nn * m->dim; ++i)
         point_real(m->points, POINT_A, p)[i % m->dim] +=
           support_N(w, g, p)[i / m->dim] * a[node[i / m->dim] * m->dim + i % m->dim];
+    }
   }
 }
 
@@ -173,7 +175,7 @@ PetscErrorCode InitialAcceleration(Model *m)
   frames_turn(&m->boundary->frames, dim, n->rate);
   PetscCall(GridToGhosts(m->grid, dim, n->a));
   PetscCall(PetscArraycpy(n->a_points, n->a, dofs));
-  accelerate_points(m, n->a);
+  accelerate_points(m, NULL, n->a);
   PetscFunctionReturn(0);
 }
 

@@ -69,6 +69,31 @@ PetscErrorCode JumpFrom(Model *before, Tables *tables)
   PetscFunctionReturn(0);
 }
 
+/* Points that come have the acceleration that their nodes had, and jump with these to what balances them. Nodes of a
+ * mesh keep it (bring.c). */
+static PetscErrorCode ComeAlong(Model *m, const Case *from)
+{
+  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
+  PetscBool *comes, any = PETSC_FALSE;
+  PetscReal *a;
+
+  PetscFunctionBeginUser;
+  if (!m->method->restores_grid || m->method->clouds) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(m->c->n_bodies, &comes, dofs, &a));
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b) {
+    comes[b] = (PetscBool)(!m->c->bodies[b].absent && body_comes(m->c, from, b));
+    any |= comes[b];
+  }
+  for (PetscInt i = 0; i < dofs; ++i) a[i] = m->balanced[2 * i - i % dim];
+  if (any) {
+    accelerate_points(m, comes, a);
+    m->space->present = PETSC_FALSE;
+    PetscCall(ModelInitialise(m));
+  }
+  PetscCall(PetscFree2(comes, a));
+  PetscFunctionReturn(0);
+}
+
 /* Is it more than round-off of what acts? */
 static PetscErrorCode Matters(const Model *m, const PetscReal *a, const PetscReal *lacks, PetscReal size, PetscBool *it)
 {
@@ -89,7 +114,7 @@ static PetscErrorCode Add(Model *m, const PetscReal *a, const PetscReal *lacks)
   const PetscInt dofs = m->grid->n_nodes * m->dim;
 
   PetscFunctionBeginUser;
-  accelerate_points(m, a);
+  accelerate_points(m, NULL, a);
   PetscCall(ContactBegin(m, PETSC_TRUE));
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) {
     n->rate[i] -= lacks[i];
@@ -128,7 +153,7 @@ static PetscErrorCode Jump(Model *m, const PetscReal *both, PetscReal size)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode JumpTo(Model *m, const Tables *tables, char reason[256])
+PetscErrorCode JumpTo(Model *m, const Case *from, const Tables *tables, char reason[256])
 {
   const PetscInt n = m->grid->n_nodes * 2 * m->dim;
   PetscReal *both, size;
@@ -138,6 +163,7 @@ PetscErrorCode JumpTo(Model *m, const Tables *tables, char reason[256])
     const NodalField field = field_of(m);
     PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 1, &field, tables_find(tables, "jump"), reason));
   }
+  PetscCall(ComeAlong(m, from));
   PetscCall(PetscMalloc1(n, &both));
   PetscCall(Find(m, both, &size));
   for (PetscInt i = 0; i < n; ++i) both[i] -= m->balanced[i];

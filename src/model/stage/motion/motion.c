@@ -12,6 +12,17 @@ static PetscBool begins_anew(const Model *m, const Case *from)
   return (PetscBool)(stands_still(m) || case_is_static(&from->analysis));
 }
 
+/* Points that come were accelerated as in a first step when they were drawn; here they jump with what acts, or what is
+ * new comes bit by bit. */
+static void let_come(Model *m, const Case *from)
+{
+  if (!m->balanced && m->c->release <= 0) return;
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    if (!body_comes(m->c, from, m->points->body[p])) continue;
+    for (PetscInt d = 0; d < m->dim; ++d) point_real(m->points, POINT_A, p)[d] = 0;
+  }
+}
+
 PetscErrorCode ResetMotion(Model *m, const Case *from, PetscBool next)
 {
   const PetscBool stands = stands_still(m), anew = !next || (m->c->spec && m->c->spec->reset.displacement);
@@ -23,6 +34,7 @@ PetscErrorCode ResetMotion(Model *m, const Case *from, PetscBool next)
   if (anew) PetscCall(PetscArrayzero(m->tracers->real[POINT_U], m->tracers->n * m->dim));
   if (stands && !m->method->restores_grid) PetscCall(PetscArrayzero(n->v, dofs));
   if (stands) PetscCall(PetscArrayzero(m->points->real[POINT_V], numbers));
+  let_come(m, from);
   if (!begins_anew(m, from)) PetscFunctionReturn(0);
   if (m->points->components[POINT_SLOPE])
     PetscCall(PetscArrayzero(m->points->real[POINT_SLOPE], m->points->n * m->points->components[POINT_SLOPE]));
@@ -39,7 +51,7 @@ PetscErrorCode BeginAcceleration(Model *m, const Case *from, const Tables *table
 
   PetscFunctionBeginUser;
   if (m->scheme->inertia && begins_anew(m, from)) PetscCall(InitialAcceleration(m));
-  if (m->balanced) PetscCall(JumpTo(m, tables, reason));
+  if (m->balanced) PetscCall(JumpTo(m, from, tables, reason));
   PetscCheck(!reason[0], m->comm, PETSC_ERR_PLIB, "%s", reason);
   PetscFunctionReturn(0);
 }
