@@ -119,6 +119,16 @@ expect "a wall has been moved" 0 "$talus" check jumped.yaml
 ! grep -q jumps err.txt || fail "$name: $(cat err.txt)"
 expect "a wall comes and jumps" 0 "$talus" check jumped.yaml --set 'stages[1].walls=[{name: side, shape: {half-space: {point: [0.5, 0], normal: [-1, 0]}}, motion: [{displacement: {x: -0.01}}]}]'
 says err.txt "wall 'side' jumps by 0.01 m at the start"
+# In statics that is meant where nothing came before; later an amplitude that begins with 1 holds nothing, and moves once more.
+hold='amplitude: [[0, 1], [1, 1]]'
+sed "s/motion: .{displacement: {y: -0.01}/&, $hold/; s/displacement: {y: 0.01}/&, $hold/; s/analysis: {type: dynamic.*/loads: {gravity: [0, 0]}}]/" jumped.yaml >holds.yaml
+expect "what statics begin with" 0 "$talus" check holds.yaml
+lacks err.txt "jumps"
+lid="walls: [{name: lid, shape: {half-space: {point: [0, 0.5], normal: [0, -1]}}, motion: [{displacement: {y: -0.01}, amplitude: [[0, 1], [1, -0.5]]}]}]"
+lift="boundary: [{name: lift, on: {boundary: bottom}, displacement: {y: 0.01}, amplitude: [[0, 1], [2, 1]]}]"
+expect "a held wall jumps" 0 "$talus" run holds.yaml --out holds --force --quiet --set "stages[1]={name: two, $lid, $lift}"
+says err.txt "wall 'lid' jumps by 0.01 m at the start: it begins where its shape is"
+says err.txt "what this prescribes jumps by 0.01 m at the start: it counts from where nodes are by now"
 # A block squeezed by a millionth of its height bears what its modulus says, E / (1 - nu^2) strain, however small: what
 # gaps of a fixed size leave would be a third of it.
 cat >squeezed.yaml <<'END'

@@ -29,7 +29,8 @@ static const SchemaEntry stage_entries[] = {
           "takes one away, [] all. Those without a name stay"),
   PART_OF("walls",
           "likewise; walls that come later are `absent` at the top. A wall that is given anew begins where its shape "
-          "is, not where its motion has brought it. One with mass that was there stays where it is, as long as its "
+          "is, not where its motion has brought it (left out it stays there; an amplitude that begins with 1 moves it "
+          "by all of its way once more). One with mass that was there stays where it is, as long as its "
           "shape is in the same words, and keeps its velocity and spin, whatever its mass is now, unless the stage "
           "says others; its load goes on as it was if `mass` is in the same words, and else, in statics, from what the "
           "wall bore to the new value; one that comes begins as it is said"),
