@@ -58,4 +58,11 @@ sed -e 's/analysis: .*/analysis: {type: static, steps: 10, until: [{measure: wei
   -e 's/min: \[0.1, 0.05\]/min: [0.1, 0]/' bounce.yaml >static.yaml
 expect "statics" 0 "$talus" run static.yaml --out static --quiet
 says static/log.txt "ended = weight rose above 210 N, at t = 0.5" # of 500 N at t = 1
+
+# A step that goes past `after` may cross the value anywhere; what is above it before does not
+for time in 0.45 0.55; do
+  expect "after $time" 0 "$talus" run static.yaml --out after$time --quiet --set "analysis.until=[{measure: weight, above: 210, after: $time}]"
+done
+says after0.45/log.txt "ended = weight rose above 210 N, at t = 0.5"
+lacks after0.55/log.txt "ended = "
 finish

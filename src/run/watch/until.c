@@ -38,11 +38,13 @@ static PetscBool holds(const UntilSpec *spec, PetscReal value)
 
 static void look(Until *u, PetscInt k, const UntilSpec *spec, PetscReal time, PetscReal value)
 {
-  if (time < spec->after * (1 - 1e-9) || PetscIsNanReal(value)) return;
+  const PetscBool counts = (PetscBool)(time >= spec->after * (1 - 1e-9));
+  if (PetscIsNanReal(value)) return;
   if (!holds(spec, value)) {
     u->was_off[k] = 1;
     u->since[k] = -1;
-  } else if (u->since[k] < 0 && (u->was_off[k] > 0 || spec->kind == UNTIL_COUNT)) u->since[k] = time;
+  } else if (!counts) u->was_off[k] = 0; /* it is there before that time, and must leave first */
+  else if (u->since[k] < 0 && (u->was_off[k] > 0 || spec->kind == UNTIL_COUNT)) u->since[k] = time;
   if (u->since[k] >= 0 && time - u->since[k] >= spec->duration * (1 - 1e-9) && !u->ended) u->ended = k + 1;
 }
 

@@ -8,9 +8,11 @@
 
 typedef struct {
   PetscInt n;
-  PetscReal *was_off; /* n: has the condition not held since it counts? 1 or 0 */
-  PetscReal *since;   /* n: time from which on it has held, s; < 0: it does not */
-  PetscInt ended;     /* number of the condition that ended the run, from 1; 0: none has */
+  /* n: has the condition not held since it counts, or just before that? A step may cross the value and the time from
+   * which it counts. 1 or 0 */
+  PetscReal *was_off;
+  PetscReal *since; /* n: time from which on it has held, s; < 0: it does not */
+  PetscInt ended;   /* number of the condition that ended the run, from 1; 0: none has */
 } Until;
 
 PetscErrorCode UntilCreate(const Case *c, Until *until);

@@ -49,8 +49,9 @@ static const SchemaEntry until_entries[] = {
   KEY("count", INTEGER, NULL, "so many events are over, of a measure that counts some", AT_LEAST(1), TAG(UNTIL_COUNT),
       AT(UntilSpec, count)),
   KEY("for", NUMBER, "s", "and has stayed there for so long", .fallback = "0", AT_LEAST(0), AT(UntilSpec, duration)),
-  KEY("after", NUMBER, "s", "what is before this time does not matter", .fallback = "0", AT_LEAST(0),
-      AT(UntilSpec, after)),
+  KEY("after", NUMBER, "s",
+      "what is before this time does not matter; a step that goes past it may cross the value anywhere",
+      .fallback = "0", AT_LEAST(0), AT(UntilSpec, after)),
   {.key = NULL},
 };
 static const SchemaTable until = {
