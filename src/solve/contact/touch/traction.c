@@ -32,6 +32,14 @@ static void hand(const ContactPoint *c, PetscReal weight, PetscReal share, const
   at[AT_SURFACE] += area;
 }
 
+/* Where nodes follow others some functions dip below zero, and what is left of them adds up to more than 1. */
+static PetscReal all_weights(const Contact *s, const ContactPoint *c)
+{
+  PetscReal sum = 0;
+  for (PetscInt e = c->first; e < c->first + c->n; ++e) sum += contact_weight(s, e);
+  return sum;
+}
+
 /* What each node has: n_nodes x AT_ALL. */
 static PetscErrorCode ToNodes(const Contact *s, const Grid *grid, PetscInt wall, PetscReal share, PetscReal *nodes)
 {
@@ -40,9 +48,10 @@ static PetscErrorCode ToNodes(const Contact *s, const Grid *grid, PetscInt wall,
   PetscFunctionBeginUser;
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
     if (!takes_part(c, wall)) continue;
+    const PetscReal whole = all_weights(s, c);
     contact_force(c, f);
     for (PetscInt e = c->first; e < c->first + c->n; ++e)
-      hand(c, contact_weight(s, e), share, f, nodes + AT_ALL * s->node[e]);
+      hand(c, contact_weight(s, e) / whole, share, f, nodes + AT_ALL * s->node[e]);
   }
   PetscCall(GridSumToOwners(grid, AT_ALL, nodes));
   PetscCall(GridToGhosts(grid, AT_ALL, nodes));
