@@ -68,6 +68,7 @@ static PetscErrorCode StartAgain(Model *m)
   if (m->step > 0 || !m->scheme->inertia) PetscFunctionReturn(0);
   PetscCall(PetscArrayzero(m->points->real[POINT_A], m->points->n * m->dim));
   PetscCall(InitialAcceleration(m));
+  PetscCall(ContactStand(m));
   PetscFunctionReturn(0);
 }
 

@@ -293,6 +293,8 @@ ContactWork contact_work(const Model *model, PetscReal dt);
 PetscErrorCode ContactForces(Model *model, PetscReal dt);
 /* Collective. After the points' strain was committed: what measures ask of each wall. */
 PetscErrorCode ContactSurvey(Model *model);
+/* Collective. The same of the state that a first step begins with; contact points have its forces. */
+PetscErrorCode ContactStand(Model *model);
 
 /* Collective. The nodes know the step's end (force, v1, a1), the points still stand at its
  * start. */

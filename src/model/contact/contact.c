@@ -315,7 +315,8 @@ static void take_section(const Model *m, const NodalScene *scene, ContactPoint *
   c->section = c->cover * contact_section(scene, c->owner, c->normal, (PetscReal[]){r, x[0]});
 }
 
-PetscErrorCode ContactSurvey(Model *m)
+/* stepped: has a step slid them? */
+static PetscErrorCode Survey(Model *m, PetscBool stepped)
 {
   const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
   const Contact *s = m->contact;
@@ -327,7 +328,7 @@ PetscErrorCode ContactSurvey(Model *m)
   PetscCall(PetscCalloc2(2 * n, &sums, n, &deepest));
   PetscCall(ContactCover(m->contact, m->grid));
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    sums[c->wall] += point_work(m, c, 0).sliding;
+    if (stepped) sums[c->wall] += point_work(m, c, 0).sliding;
     if (!c->covered) continue;
     take_section(m, &scene, c);
     sums[n + c->wall] += c->section;
@@ -341,6 +342,25 @@ PetscErrorCode ContactSurvey(Model *m)
     s->wall[k].deepest = deepest[k];
   }
   PetscCall(PetscFree2(sums, deepest));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactSurvey(Model *m)
+{
+  PetscFunctionBeginUser;
+  PetscCall(Survey(m, PETSC_TRUE));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode ContactStand(Model *m)
+{
+  PetscFunctionBeginUser;
+  if (!m->contact) PetscFunctionReturn(0);
+  PetscCall(PetscArrayzero(m->nodes->du, m->grid->n_nodes * m->dim));
+  const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
+  PetscCall(ContactFind(m->contact, &scene));
+  contact_stand(m->contact, share_of_force(m).mean);
+  PetscCall(Survey(m, PETSC_FALSE));
   PetscFunctionReturn(0);
 }
 

@@ -126,6 +126,7 @@ PetscErrorCode MeasuresStart(Model *m)
 {
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(m->c->n_measures, &m->memory));
+  if (!case_goes_on(m->c)) PetscCall(ContactStand(m)); /* else the state is still to come */
   PetscCall(MeasuresRemember(m, 0));
   PetscFunctionReturn(0);
 }

@@ -82,7 +82,8 @@ PetscErrorCode BeginTracers(Model *m, const Case *from, Diag *diag)
 PetscErrorCode BeginMeasures(Model *m, const Case *from)
 {
   PetscFunctionBeginUser;
+  PetscCall(ContactStand(m));
   for (PetscInt k = 0; k < m->c->n_measures; ++k)
-    if (measure_before(m->c, k, from) < 0) PetscCall(MeasureBegin(m, k));
+    if (!from || measure_before(m->c, k, from) < 0) PetscCall(MeasureBegin(m, k));
   PetscFunctionReturn(0);
 }

@@ -282,7 +282,6 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, const Model
   astride_tell(m, diag);
   if (next) PetscCall(WallsCome(m, from, diag));
   PetscCall(BeginTracers(m, next ? from : NULL, diag));
-  if (next) PetscCall(BeginMeasures(m, from));
   PetscCall(DiagReduce(m->comm, diag, &errors));
   if (errors) PetscFunctionReturn(0);
   PetscCall(RemainderTo(m, from, tables, &imbalance->moved));
@@ -291,6 +290,7 @@ PetscErrorCode ModelTake(Model *m, Tables *tables, const Case *from, const Model
   if (!next) PetscCall(EnergyStart(m)); /* what was dissipated is the other run's */
   if (!next) PetscCall(ContactTell(m));
   PetscCall(BeginAcceleration(m, from, tables));
+  PetscCall(BeginMeasures(m, next ? from : NULL));
   PetscFunctionReturn(0);
 }
 

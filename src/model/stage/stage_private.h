@@ -45,7 +45,8 @@ PetscErrorCode TakeTracers(Model *model, const Tables *tables, const Case *from,
 /* Tracers of measures that begin with the stage, or with a run that goes on with the state of another one (from: NULL),
  * begin in material; on the rank that holds them. */
 PetscErrorCode BeginTracers(Model *model, const Case *from, Diag *diag);
-/* Collective. Measures that begin with the stage begin where the model now stands. */
+/* Collective, once all of the state stands. Measures that begin with the stage, or with a run that goes on with the
+ * state of another one (from: NULL), begin with it. */
 PetscErrorCode BeginMeasures(Model *model, const Case *from);
 /* The stress of point p stays, in the state of another law or of other constants, and so do its place and its
  * shape; PETSC_FALSE: there is no such state. */

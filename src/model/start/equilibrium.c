@@ -183,6 +183,8 @@ static PetscErrorCode Begin(Model *m)
     PetscCall(InitialAcceleration(m));
   }
   PetscCall(EnergyStart(m));
+  PetscCall(ContactStand(m));
+  for (PetscInt k = 0; k < m->c->n_measures; ++k) PetscCall(MeasureBegin(m, k)); /* they have seen what was given */
   PetscFunctionReturn(0);
 }
 

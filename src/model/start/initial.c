@@ -90,17 +90,22 @@ static PetscErrorCode Unbalanced(Model *m, PetscBool goes_on)
   PetscFunctionReturn(0);
 }
 
-/* What the given stress lacks of balance where nobody seeks it. Constraints of a cloud bear what would count so. */
+/* Does the run begin with the stress that it is given, for which nobody seeks an equilibrium? */
+static PetscBool begins_as_given(const Case *c)
+{
+  return (PetscBool)(!case_goes_on(c) && case_has_stress(c) && !case_equilibrates(c));
+}
+
+/* What the given stress lacks of balance then. Constraints of a cloud bear what would count so. */
 static PetscErrorCode TellLack(Model *m)
 {
   const Case *c = m->c;
-  const PetscBool given = (PetscBool)(c->stage == 0 && !c->initial.run && case_has_stress(c));
   PetscInt constrained = 0;
   PetscReal *acting;
   StepProblem p;
 
   PetscFunctionBeginUser;
-  if (!given || case_equilibrates(c)) PetscFunctionReturn(0);
+  if (!begins_as_given(c)) PetscFunctionReturn(0);
   PetscCall(MPIU_Allreduce(&m->space->constraints->n, &constrained, 1, MPIU_INT, MPI_SUM, m->comm));
   if (constrained) PetscFunctionReturn(0);
   gravity_at(c, m->time, m->gravity);
@@ -125,19 +130,26 @@ static PetscErrorCode Accelerate(Model *m, PetscBool first, PetscReal *a)
   PetscFunctionReturn(0);
 }
 
+/* What boundaries, walls and interfaces bear before the first step, where no equilibrium tells it. */
+static void tell_forces(Model *m)
+{
+  if (!begins_as_given(m->c)) return;
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) m->nodes->reaction[i] = m->nodes->held[i];
+  for (PetscInt k = 0; m->contact && k < m->contact->n_partners; ++k)
+    m->contact->wall[k].mean = m->contact->wall[k].rate;
+}
+
 PetscErrorCode InitialReactions(Model *m)
 {
   NodalFields *n = m->nodes;
 
   PetscFunctionBeginUser;
-  if (m->c->stage > 0 || !case_has_stress(m->c)) PetscFunctionReturn(0);
-  if (m->c->initial.equilibrium > EQUILIBRIUM_NONE) PetscFunctionReturn(0); /* which tells them */
+  if (!begins_as_given(m->c)) PetscFunctionReturn(0);
   PetscCall(Unbalanced(m, PETSC_FALSE));
   PetscCall(TellLack(m));
-  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
-    n->held[i] = n->reaction[i] = m->boundary->fixed[i] ? -n->force[i] : 0;
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i) n->held[i] = m->boundary->fixed[i] ? -n->force[i] : 0;
   frames_turn(&m->boundary->frames, m->dim, n->held);
-  frames_turn(&m->boundary->frames, m->dim, n->reaction);
+  tell_forces(m);
   PetscFunctionReturn(0);
 }
 
@@ -173,6 +185,7 @@ PetscErrorCode InitialAcceleration(Model *m)
   frames_turn(&m->boundary->frames, dim, n->a);
   frames_turn(&m->boundary->frames, dim, n->held);
   frames_turn(&m->boundary->frames, dim, n->rate);
+  tell_forces(m);
   PetscCall(GridToGhosts(m->grid, dim, n->a));
   PetscCall(PetscArraycpy(n->a_points, n->a, dofs));
   accelerate_points(m, NULL, n->a);

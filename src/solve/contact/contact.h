@@ -156,6 +156,9 @@ PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **
 PetscErrorCode ContactDestroy(Contact **contact);
 /* Forget the contact points and find those of this step. The scene stands at its start. */
 PetscErrorCode ContactFind(Contact *contact, const NodalScene *scene);
+/* Those that were found bear what they begin the step with, as if an assembly had left them so. share: the walls'
+ * forces over those of the balance. */
+void contact_stand(Contact *contact, PetscReal share);
 /* Before the solve of a step of dt: penalties, and how walls move. inertia: see WeakFormInput. */
 void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia, ContactShare share);
 /* contact_held.c. Then: what cannot follow a wall. Flags in the frames of nodes, increments of the step, m. */

@@ -111,6 +111,19 @@ void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, cons
   for (int d = 0; d < 3; ++d) c->normal[d] = c->facing[d] = normal[d];
 }
 
+void contact_stand(Contact *s, PetscReal share)
+{
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
+    PetscReal pressure = 0;
+    c->gap = c->open;
+    if (c->gone) c->state = CONTACT_OPEN;
+    if (c->state == CONTACT_OPEN) continue; /* what is kept there may be a slip */
+    for (int d = 0; d < 3; ++d) pressure += c->last[d] * c->normal[d] / share;
+    c->now.pressure = pressure;
+    for (int d = 0; d < 3; ++d) c->now.shear[d] = c->last[d] / share - pressure * c->normal[d];
+  }
+}
+
 /* By what the strength of the contact is divided; 0: of what sticks until it yields. */
 static PetscReal divisor_of(const Contact *s, const NodalScene *scene, const ContactPoint *c)
 {
