@@ -14,10 +14,15 @@ static OutputField fields[OUTPUT_FIELDS_MOST + 1] = {
    1, PG},
   {"mises", "Pa", "von Mises equivalent stress, q", 1, PG},
   {"mobilised_friction", "deg", "angle of friction that holds the stress without cohesion", 1, PG},
-  {"strain", "", "logarithmic strain ln V since the unstressed state: xx yy zz xy yz zx, shears not doubled", 6, PG},
+  {"strain", "",
+   "logarithmic strain ln V since the unstressed state: xx yy zz xy yz zx, shears not doubled; of a given stress "
+   "(`k0`, "
+   "`stress`) it has the change of volume alone, a third along each axis, and not what that has sheared",
+   6, PG},
   {"deviatoric_strain", "", "sqrt(2/3 e:e) of its deviator e", 1, PG},
   {"volume_strain", "", "ln of the volume over the unstressed one, positive where it has grown", 1, PG},
-  {"deformation_gradient", "", "deformation gradient, row by row", 9, P},
+  {"deformation_gradient", "", "deformation gradient, row by row; begins as J^(1/3) I with the J of a given stress", 9,
+   P},
   {"equivalent_plastic_strain", "", "accumulated plastic strain, 0 for elastic laws", 1, PG},
   {"plastic_increment", "", "what the last step added to it: where a body slides, at a factor of safety", 1, P},
   {"mechanism", "m/s",

@@ -47,6 +47,9 @@ const Measure measure_strain = {
   .key = "strain",
   .takes = MEASURE_WORD,
   .number = {.unit = "",
-             .help = "logarithmic strain ln V of the deformation since the unstressed state: its mean over the volume, "
-                     "or at a tracer a linear fit to the points of its body around it; invariants are those of that"},
+             .help = "logarithmic strain ln V of the deformation since the start, and before that of a given stress "
+                     "(`k0`, `stress`) the change of volume alone, a third of it along each axis: what that stress has "
+                     "sheared is not in it (ln V since the unstressed state where none is given); its mean over the "
+                     "volume, or at a tracer a linear fit to the points of its body around it; invariants are those of "
+                     "that"},
   .words = words};
