@@ -307,15 +307,14 @@ static void bad_meshes(void **state)
        " 0\n$EndNodes\n"                                                                          \
        "$Elements\n2\n1 3 2 0 1 1 2 3 4\n2 3 2 0 2 5 6 7 8\n$EndElements\n"
 
-/* A mesh is made of the text, of which one is told this, or nothing. */
-static void tell(const char *text, const char *said)
+/* A mesh is made of the text for a case, of which one is told this, or nothing. */
+static void tell_of(Case c, const char *text, const char *said)
 {
   char *printed = NULL;
   size_t size;
   Diag *diag;
   Grid *grid;
   write_file("told.msh", text, strlen(text));
-  const Case c = mesh_case(in_folder("told.msh"), 2);
   CALL(DiagCreate(&diag));
   CALL(GridCreate(PETSC_COMM_WORLD, &c, NULL, NULL, diag, &grid));
   assert_non_null(grid);
@@ -329,6 +328,8 @@ static void tell(const char *text, const char *said)
   CALL(GridDestroy(&grid));
 }
 
+static void tell(const char *text, const char *said) { tell_of(mesh_case(in_folder("told.msh"), 2), text, said); }
+
 /* Cells that touch and share no node. */
 static void torn(void **state)
 {
@@ -337,6 +338,28 @@ static void torn(void **state)
   tell(SIDE_BY_SIDE("1.00001", "1"), "2 pairs of nodes");
   tell(SIDE_BY_SIDE("1", "1.2"), "1 pair of nodes stands at one place, as at (1, 0)");
   tell(SIDE_BY_SIDE("1.01", "1"), NULL);
+}
+
+#define REGIONS(a, b)                                                                                \
+  HEAD                                                                                               \
+    "$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 1 0 0\n6 2 0 0\n7 2 1 0\n8 1 1 0\n$EndNodes\n" \
+    "$Elements\n2\n1 3 2 " a " 1 1 2 3 4\n2 3 2 " b " 2 5 6 7 8\n$EndElements\n"
+
+/* Unless they are of two bodies that meet at an interface; other bodies are torn all the same. */
+static void met(void **state)
+{
+  char *between[] = {"b", "a"}, *others[] = {"a", "c"};
+  BodySpec body[] = {{.name = "a", .region = "1"}, {.name = "b", .region = "2"}, {.name = "c", .region = "3"}};
+  InterfaceSpec interface = {.n_between = 2, .between = between};
+  Case c = mesh_case(in_folder("told.msh"), 2);
+  (void)state;
+  c.n_bodies = 3, c.bodies = body;
+  c.n_interfaces = 1, c.interfaces = &interface;
+  tell_of(c, REGIONS("1", "2"), NULL);
+  tell_of(c, REGIONS("1", "3"), "2 pairs of nodes");
+  tell_of(c, REGIONS("1", "1"), "2 pairs of nodes");
+  interface.between = others;
+  tell_of(c, REGIONS("1", "2"), "2 pairs of nodes");
 }
 
 #define LINES(n, lines)                                                                     \
@@ -459,6 +482,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(bad_files),
     cmocka_unit_test(bad_meshes),
     cmocka_unit_test(torn),
+    cmocka_unit_test(met),
     cmocka_unit_test(strays),
     cmocka_unit_test(bad_geo),
     cmocka_unit_test(gmsh_is_missing),

@@ -17,8 +17,8 @@ PetscErrorCode FileMeshDestroy(FileMesh *mesh);
 PetscErrorCode FileMeshFill(FileMesh *mesh, const MshFile *msh, const char *path, Diag *diag);
 /* An error, with two of the cells and where, if any lie in one another. */
 PetscErrorCode FileMeshCheckOverlap(const FileMesh *mesh, const char *path, Diag *diag);
-/* A warning if nodes stand at one place whose cells nothing joins. */
-PetscErrorCode FileMeshTellTorn(const FileMesh *mesh, const char *path, Diag *diag);
+/* A warning if nodes stand at one place whose cells nothing joins, no interface of c either; NULL: there is none. */
+PetscErrorCode FileMeshTellTorn(const FileMesh *mesh, const Case *c, const char *path, Diag *diag);
 /* Named sets of the physical groups. face_at: for each face id of the table, cell * faces +
  * side. */
 PetscErrorCode FileMeshSets(Grid *grid, const MshFile *msh, const PetscInt *node_of, const PetscInt *cell_of,

@@ -32,8 +32,8 @@ static PetscErrorCode ShareFacts(MPI_Comm comm, Grid *grid)
 }
 
 /* Rank 0: the checked mesh and the rank of each of its cells; no owners if there are mistakes. */
-static PetscErrorCode Prepare(FileMesh *mesh, const GridSpec *spec, const char *path, GridWeight weight, void *context,
-                              Diag *diag, PetscMPIInt **owner)
+static PetscErrorCode Prepare(FileMesh *mesh, const Case *c, const GridSpec *spec, const char *path, GridWeight weight,
+                              void *context, Diag *diag, PetscMPIInt **owner)
 {
   const PetscInt errors = diag_errors(diag);
   PetscMPIInt size;
@@ -45,13 +45,15 @@ static PetscErrorCode Prepare(FileMesh *mesh, const GridSpec *spec, const char *
   if (msh) PetscCall(FileMeshFill(mesh, msh, path, diag));
   PetscCall(MshDestroy(&msh));
   if (diag_errors(diag) != errors) PetscFunctionReturn(0);
+  PetscCall(FileMeshTellTorn(mesh, c, path, diag));
   PetscCall(PetscMalloc1(mesh->grid->n_cells, owner));
   PetscCall(FileMeshPartition(mesh->grid, size, weight, context, *owner));
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim, const char *path, GridWeight weight,
-                              void *context, Diag *diag, Grid **grid)
+/* c: whose bodies may meet in it, or NULL. */
+static PetscErrorCode CreateOf(MPI_Comm comm, const Case *c, const GridSpec *spec, PetscInt dim, const char *path,
+                               GridWeight weight, void *context, Diag *diag, Grid **grid)
 {
   PetscMPIInt rank, *owner = NULL;
   PetscInt good;
@@ -61,7 +63,7 @@ PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim,
   *grid = NULL;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCall(FileMeshCreate(comm, &grid_mesh, dim, &mesh));
-  if (!rank) PetscCall(Prepare(&mesh, spec, path, weight, context, diag, &owner));
+  if (!rank) PetscCall(Prepare(&mesh, c, spec, path, weight, context, diag, &owner));
   good = owner != NULL;
   PetscCallMPI(MPI_Bcast(&good, 1, MPIU_INT, 0, comm));
   if (good) {
@@ -70,6 +72,14 @@ PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim,
   }
   PetscCall(FileMeshDestroy(&mesh));
   PetscCall(PetscFree(owner));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode GridCreateMesh(MPI_Comm comm, const GridSpec *spec, PetscInt dim, const char *path, GridWeight weight,
+                              void *context, Diag *diag, Grid **grid)
+{
+  PetscFunctionBeginUser;
+  PetscCall(CreateOf(comm, NULL, spec, dim, path, weight, context, diag, grid));
   PetscFunctionReturn(0);
 }
 
@@ -94,7 +104,7 @@ static PetscErrorCode Create(MPI_Comm comm, const Case *c, GridWeight weight, vo
 {
   PetscFunctionBeginUser;
   PetscCall(GeoCheckParameters(comm, c, diag));
-  PetscCall(GridCreateMesh(comm, &c->grid, kinematics_dim(c->kinematics), "grid.mesh", weight, context, diag, grid));
+  PetscCall(CreateOf(comm, c, &c->grid, kinematics_dim(c->kinematics), "grid.mesh", weight, context, diag, grid));
   PetscCall(GridCheckAxis(c->kinematics, "grid.mesh", diag, grid));
   PetscFunctionReturn(0);
 }

@@ -332,7 +332,6 @@ PetscErrorCode FileMeshFill(FileMesh *mesh, const MshFile *msh, const char *path
   }
   if (diag_errors(diag) == errors) PetscCall(ConnectMesh(mesh, msh, node_of, cell_of, path, diag));
   if (diag_errors(diag) == errors) PetscCall(FileMeshCheckOverlap(mesh, path, diag));
-  if (diag_errors(diag) == errors) PetscCall(FileMeshTellTorn(mesh, path, diag));
   PetscCall(PetscFree3(node_of, cell_of, entity_of));
   PetscFunctionReturn(0);
 }
