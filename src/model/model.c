@@ -59,7 +59,7 @@ static PetscErrorCode CreateMaterials(Model *m, Diag *diag)
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc1(c->n_materials, &m->materials));
-  m->symmetric = !contact_rubs(c) && !case_load_follows(c);
+  m->symmetric = !contact_rubs(c) && !case_load_follows(c) && !(m->scheme->inertia && contact_turns(c));
   for (PetscInt i = 0; i < c->n_materials; ++i) {
     Material *material = &m->materials[i];
     PetscCall(MaterialResolve(c, i, diag, material));

@@ -268,6 +268,8 @@ PetscErrorCode ContactBegin(Model *model, PetscBool remembered);
 PetscErrorCode ContactTell(Model *model);
 /* Does a wall or an interface of the case rub? Then tangents are not symmetric. */
 PetscBool contact_rubs(const Case *c);
+/* Does a wall push along a normal that turns within steps? Of what has inertia its tangent is not symmetric then. */
+PetscBool contact_turns(const Case *c);
 /* Collective, in PrepareStep: what is in contact starts the step with the motion of its wall. */
 PetscErrorCode ContactHold(Model *model, PetscReal dt, PetscReal inertia);
 /* Collective. Likewise ends it, once v1 and a1 are known. */

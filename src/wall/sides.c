@@ -46,6 +46,21 @@ PetscBool wall_has_corners(const WallSpec *w)
   }
 }
 
+PetscBool wall_turns(const WallSpec *w)
+{
+  const Shape *s = &w->shape;
+  for (PetscInt i = 0; i < w->n_motions; ++i)
+    if (w->motions[i].kind == MOTION_ROTATION) return PETSC_TRUE;
+  if (w->has_mass && w->mass.free[3]) return PETSC_TRUE;
+  switch (s->kind) {
+  case SHAPE_HALF_SPACE:
+  case SHAPE_BOX:
+  case SHAPE_DISK: return PETSC_FALSE;
+  case SHAPE_LINE: return (PetscBool)(s->n_vertices > 2);
+  default: return PETSC_TRUE;
+  }
+}
+
 PetscBool sides_have(const WallSides *sides, const WallPlace *place)
 {
   for (PetscInt i = 0; i < sides->n; ++i)

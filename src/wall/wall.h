@@ -41,6 +41,9 @@ PetscBool wall_near(const Walls *walls, PetscInt k, PetscReal t, const PetscReal
 #define WALL_SIDES 3
 /* May it have more than one before material somewhere: corners as seen from there? */
 PetscBool wall_has_corners(const WallSpec *wall);
+/* May its normal before what goes along it turn: is it round, or of several faces, or does it turn itself? Boxes are no
+ * such: their faces are straight, and material that goes round an edge of one leaves it. */
+PetscBool wall_turns(const WallSpec *wall);
 /* wall_near for all sides of the wall that a position in a corner of it meets: the nearest first, as wall_near has it,
  * then others that are seen from x within reach, where the distance is least among places around (sides.c). Returns how
  * many. */

@@ -361,6 +361,69 @@ static void test_smooth(void **state)
   CALL(ModelDestroy(&m));
 }
 
+/* A block that goes round in a smooth drum (in space a bowl), which stands or turns about its centre. */
+static Model *in_drum(Bench *b, const Block *r, MotionSpec *turning, WallSpec *wall)
+{
+  const PetscReal half = 0.125, radius = PetscSqrtReal(1 + (up_of(r) == 2 ? 2 : 1) * half * half);
+  bench_init(b, r->method, r->cell, 0);
+  bench_grid(b, (PetscReal[]){-1.25, -1.25, -0.25}, (PetscReal[]){1.25, 1.25, 0.25}, half);
+  bench_box(b, 0, (PetscReal[]){-half, -1, -half}, (PetscReal[]){half, -0.75, half});
+  bench_dynamic(b, 1, 0.01);
+  b->c.analysis.scheme = (char *)r->scheme;
+  b->c.analysis.transfer = (char *)r->transfer;
+  b->body[0].spin[2] = 3;
+  b->c.newton = (NewtonSpec){.residual = 1e-11, .increment = 1e-12, .max_iterations = 25, .ease = 6};
+  b->c.basis = (BasisSpec){
+    .kind = r->basis, .gamma = 1.8, .effective_radius = 1, .radius = 2, .max_radius = 3.5, .condition = 50, .gap = 2};
+  b->c.stabilisation.curvature = 0.1;
+  *wall = (WallSpec){.name = (char *)"floor",
+                     .shape = {.kind = SHAPE_BALL, .radius = radius},
+                     .inside = PETSC_TRUE,
+                     .n_motions = turning != NULL,
+                     .motions = turning};
+  b->c.n_walls = 1;
+  b->c.walls = wall;
+  return bench_model(b, PETSC_COMM_WORLD);
+}
+
+/* What does not rub has no torque about the centre, and a drum that turns does no work; steps of changing length. */
+static void go_round(const Block *r, PetscBool turns)
+{
+  MotionSpec turning = {.kind = MOTION_ROTATION, .axis = {0, 0, 1}, .rate = 3};
+  Energies e;
+  Bench b;
+  WallSpec wall;
+  PetscReal given = 0;
+  Model *m = in_drum(&b, r, turns ? &turning : NULL, &wall);
+  const PetscReal before = model_sum(m, "angular_momentum", 2);
+  for (PetscInt k = 0; m->time < 0.15; ++k) {
+    const PetscReal start = m->time;
+    model_step(m, k % 3 == 1 ? 5e-3 : 1e-2);
+    given += (m->time - start) * measure(m, "wall_torque", NULL, 2);
+  }
+  CALL(ModelEnergies(m, &e));
+  const PetscReal left = model_sum(m, "angular_momentum", 2) / before;
+  PetscPrintf(PETSC_COMM_WORLD, "%s cell %d in a drum%s: spin %.9f, torque %.2g, work %.2g, transfer %.2g of %.4g J\n",
+              r->method, (int)r->cell, turns ? " that turns" : "", (double)left, (double)(given / before),
+              (double)e.boundary, (double)e.transfer, (double)e.start);
+  CHECK_CLOSE(given / before, 0, 2e-5);
+  CHECK_CLOSE(left, 1, 1e-4);
+  CHECK_CLOSE(e.boundary, 0, 5e-4 * e.start);
+  CALL(ModelDestroy(&m));
+}
+
+static void test_round(void **state)
+{
+  static const Block blocks[] = {
+    {"mpm", "cell", CELL_QUADRILATERAL, 0, "midpoint", "consistent", PETSC_FALSE, PETSC_FALSE, 0},
+    {"fem", "cell", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"gmm", "lme", CELL_QUADRILATERAL, 0, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+    {"fem", "cell", CELL_HEXAHEDRON, 0, NULL, "thesis", PETSC_FALSE, PETSC_FALSE, 0},
+  };
+  (void)state;
+  EACH_OF (k, blocks) go_round(&blocks[k], (PetscBool)(k % 2));
+}
+
 /* What of a body is left of a cell at its edge, far narrower than a row of points is high, stands on the floor like
  * all others, wherever the edge is. */
 static void test_narrow(void **state)
@@ -441,10 +504,10 @@ static void test_astride(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_slides), cmocka_unit_test(test_lifts),   cmocka_unit_test(test_rests),
-    cmocka_unit_test(test_flows),  cmocka_unit_test(test_through), cmocka_unit_test(test_dent),
-    cmocka_unit_test(test_smooth), cmocka_unit_test(test_narrow),  cmocka_unit_test(test_astride),
-    cmocka_unit_test(test_rises),
+    cmocka_unit_test(test_slides),  cmocka_unit_test(test_lifts),   cmocka_unit_test(test_rests),
+    cmocka_unit_test(test_flows),   cmocka_unit_test(test_through), cmocka_unit_test(test_dent),
+    cmocka_unit_test(test_smooth),  cmocka_unit_test(test_round),   cmocka_unit_test(test_narrow),
+    cmocka_unit_test(test_astride), cmocka_unit_test(test_rises),
   };
   return run_model_tests_in_turns(argc, argv, tests);
 }

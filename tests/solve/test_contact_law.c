@@ -1,5 +1,5 @@
-/* The law of an interface: its tangent against central differences, Coulomb's cone, what opens, and
- * that it turns with the wall. */
+/* The law of an interface: its tangent against central differences, Coulomb's cone, what opens, that it turns with the
+ * wall, and which way a round wall pushes. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,6 +12,8 @@
 typedef struct {
   PetscReal n[3];
   PetscBool sphere;
+  PetscBool halfway; /* does it push along the normal of the middle of a way that began at `start`? */
+  PetscReal start[3];
 } Wall;
 
 static WallPlace place_of(const Wall *w, const PetscReal x[3])
@@ -31,13 +33,19 @@ static WallPlace place_of(const Wall *w, const PetscReal x[3])
   return place;
 }
 
+static ContactPlace pushes_of(const Wall *w, const PetscReal x[3])
+{
+  const WallPlace end = place_of(w, x), start = place_of(w, w->start);
+  return w->halfway ? contact_halfway(&end, start.normal, start.gap) : contact_straight(&end);
+}
+
 static ContactState force_at(const ContactLaw *law, const Wall *w, const ContactForce *multiplier, const PetscReal x[3],
-                             PetscReal f[3], PetscReal *K)
+                             PetscReal f[3], ContactTangent *tangent)
 {
   ContactForce now;
-  const WallPlace place = place_of(w, x);
-  const ContactState state = contact_law(law, &place, x, multiplier, &now, K);
-  for (int d = 0; d < 3; ++d) f[d] = now.pressure * place.normal[d] + now.shear[d];
+  const ContactPlace place = pushes_of(w, x);
+  const ContactState state = contact_law(law, &place, x, multiplier, &now, tangent);
+  for (int d = 0; d < 3; ++d) f[d] = now.pressure * place.push[d] + now.shear[d];
   return state;
 }
 
@@ -59,8 +67,9 @@ static void compare(const ContactLaw *law, const Wall *w, const ContactForce *mu
                     PetscInt *seen)
 {
   const PetscReal step = 1e-6;
-  PetscReal f[3], plus[3], minus[3], K[9];
-  const ContactState state = force_at(law, w, multiplier, x, f, K);
+  PetscReal f[3], plus[3], minus[3];
+  ContactTangent tangent;
+  const ContactState state = force_at(law, w, multiplier, x, f, &tangent);
   for (int j = 0; j < 3; ++j) {
     PetscReal there[3] = {x[0], x[1], x[2]};
     there[j] += step;
@@ -68,22 +77,23 @@ static void compare(const ContactLaw *law, const Wall *w, const ContactForce *mu
     there[j] -= 2 * step;
     if (force_at(law, w, multiplier, there, minus, NULL) != state) return;
     for (int i = 0; i < 3; ++i)
-      assert_true(PetscAbsReal(K[3 * i + j] + (plus[i] - minus[i]) / (2 * step)) <= 1e-6 * law->penalty);
+      assert_true(PetscAbsReal(tangent.K[3 * i + j] + (plus[i] - minus[i]) / (2 * step)) <= 1e-6 * law->penalty);
   }
   ++seen[state];
 }
 
-/* Along curved walls, too, where the plane of the shear turns. Every fifth contact is about to open: there adhesion
- * goes with the pressure. */
+/* Along curved walls, too, where the plane of the shear turns, and where the force has the normal of the middle of the
+ * way. Every fifth contact is about to open: there adhesion goes with the pressure. */
 static void test_tangent(void **state)
 {
   PetscInt seen[3] = {0, 0, 0};
   unsigned seed = 1;
   (void)state;
   for (int k = 0; k < 2000; ++k) {
-    Wall w = {.sphere = k % 4 > 1};
+    Wall w = {.sphere = k % 4 > 1, .halfway = k % 3 > 0};
     const PetscReal size = k % 5 ? 1 : 0.005;
     unit(&seed, w.n);
+    for (int d = 0; d < 3; ++d) w.start[d] = 0.5 * number(&seed) + 0.2 * w.n[d];
     const ContactLaw law = {.kind = k % 4 == 3 ? CONTACT_FRICTIONLESS : CONTACT_FRICTION,
                             .friction = k % 4 == 3 ? 0 : 0.4,
                             .bond = k % 2 ? 0 : 3,
@@ -108,7 +118,7 @@ static void test_cone(void **state)
     const ContactLaw law = {.kind = CONTACT_FRICTION, .friction = 0.3, .bond = 1, .penalty = 50, .along = 50};
     const ContactForce none = {.pressure = 5};
     const PetscReal x[3] = {number(&seed), number(&seed), number(&seed)};
-    const WallPlace place = place_of(&w, x);
+    const ContactPlace place = pushes_of(&w, x);
     ContactForce now;
     PetscReal shear = 0, out = 0, work = 0;
     const ContactState is = contact_law(&law, &place, x, &none, &now, NULL);
@@ -117,7 +127,7 @@ static void test_cone(void **state)
       out += now.shear[d] * w.n[d];
       work += now.shear[d] * x[d];
     }
-    assert_true((is == CONTACT_OPEN) == (5 - 50 * place.gap <= 0) && now.pressure >= 0);
+    assert_true((is == CONTACT_OPEN) == (5 - 50 * place.at.gap <= 0) && now.pressure >= 0);
     assert_true(PetscSqrtReal(shear) <= 0.3 * now.pressure + PetscMin(1, 20 * now.pressure) + 1e-12);
     assert_true(PetscAbsReal(out) < 1e-12 && work <= 1e-12);
   }
@@ -165,11 +175,43 @@ static void test_bonded(void **state)
   assert_true(PetscAbsReal(f[0] + 20) < 1e-13 && PetscAbsReal(f[1] + 5) < 1e-13 && PetscAbsReal(f[2] - 10) < 1e-13);
 }
 
+/* Round walls push along the line through their centre and the middle of the way, wherever that begins: no torque. */
+static void test_halfway(void **state)
+{
+  unsigned seed = 3;
+  (void)state;
+  for (int k = 0; k < 200; ++k) {
+    Wall w = {.sphere = PETSC_TRUE, .halfway = PETSC_TRUE};
+    PetscReal x[3], arm[3];
+    unit(&seed, w.n);
+    for (int d = 0; d < 3; ++d) x[d] = 0.5 * number(&seed), w.start[d] = 0.5 * number(&seed);
+    for (int d = 0; d < 3; ++d) arm[d] = (x[d] + w.start[d]) / 2 + 2 * w.n[d];
+    const ContactPlace place = pushes_of(&w, x);
+    for (int d = 0; d < 3; ++d) {
+      const int i = (d + 1) % 3, j = (d + 2) % 3;
+      assert_true(PetscAbsReal(arm[i] * place.push[j] - arm[j] * place.push[i]) < 1e-14);
+    }
+  }
+}
+
+/* A normal that has turned by a right angle is that of another face. */
+static void test_turned_away(void **state)
+{
+  const WallPlace end = {.normal = {0, 1, 0}};
+  (void)state;
+  for (int k = 0; k < 2; ++k) {
+    const PetscReal start[3] = {k ? 1 : 0.6, k ? 0 : 0.8, 0};
+    const ContactPlace place = contact_halfway(&end, start, 0.1);
+    assert_true(k ? place.push[0] == 0 && place.push[1] == 1 : place.push[0] > 0.3);
+  }
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_tangent), cmocka_unit_test(test_cone),   cmocka_unit_test(test_adhesion),
-    cmocka_unit_test(test_turned),  cmocka_unit_test(test_bonded),
+    cmocka_unit_test(test_tangent),     cmocka_unit_test(test_cone),   cmocka_unit_test(test_adhesion),
+    cmocka_unit_test(test_turned),      cmocka_unit_test(test_bonded), cmocka_unit_test(test_halfway),
+    cmocka_unit_test(test_turned_away),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

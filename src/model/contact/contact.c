@@ -13,6 +13,13 @@ PetscBool contact_rubs(const Case *c)
   return (PetscBool)(case_has_contact(c, CONTACT_FRICTION) || case_has_contact(c, CONTACT_STICK));
 }
 
+PetscBool contact_turns(const Case *c)
+{
+  for (PetscInt k = 0; k < c->n_walls; ++k)
+    if (c->walls[k].contact != CONTACT_BONDED && wall_turns(c->walls + k)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 static ContactMotion motion_of(const Model *m, const ContactMass *whole, PetscReal *motion, PetscReal *given,
                                PetscReal dt, PetscBool start)
 {
@@ -267,9 +274,9 @@ static ContactWork point_work(const Model *m, const ContactPoint *c, PetscReal d
   idling(m, c, idle);
   for (int d = 0; d < 3; ++d) {
     f[d] = first * c->last[d] + end * f[d];
-    pressure += f[d] * c->normal[d];
+    pressure += f[d] * c->push[d];
     way[d] = x[d] - c->x[d] - c->swept[d] + idle[d];
-    closing += way[d] * c->normal[d];
+    closing += way[d] * c->push[d];
   }
   for (int d = 0; d < 3; ++d) {
     const PetscReal start = c->stays * c->last[d];
@@ -277,7 +284,7 @@ static ContactWork point_work(const Model *m, const ContactPoint *c, PetscReal d
     work.more += (f[d] - 0.5 * (start + balance[d])) * (x[d] - c->x[d]);
     work.moving += f[d] * (passes[d] - idle[d]);
     work.closing += f[d] * (c->swept[d] - passes[d]);
-    work.sliding -= (f[d] - pressure * c->normal[d]) * way[d];
+    work.sliding -= (f[d] - pressure * c->push[d]) * way[d];
   }
   work.closing += pressure * closing;
   if (!rubs(c->law.kind)) { /* along a wall that does not rub only a force does work that had another normal before */

@@ -69,7 +69,7 @@ static PetscBool is_still_to_come(const Model *m, const Explicit *e, const Conta
 /* Force of one wall on one point. Between substeps it keeps what its law starts from. */
 static void push(const Model *m, const Explicit *e, ContactPoint *c)
 {
-  const WallPlace place = {.gap = c->open, .normal = {c->normal[0], c->normal[1], c->normal[2]}};
+  const ContactPlace place = {.at = {.gap = c->open}, .push = {c->normal[0], c->normal[1], c->normal[2]}};
   static const PetscReal nowhere[3] = {0, 0, 0};
   const PetscReal pressure = vector_dot(c->last, c->normal);
   ContactForce before = {.pressure = beside_spring(e, c)};
@@ -77,7 +77,7 @@ static void push(const Model *m, const Explicit *e, ContactPoint *c)
   c->law.bond = c->bond;
   c->state = CONTACT_OPEN;
   c->now = (ContactForce){0};
-  c->gap = place.gap;
+  c->gap = place.at.gap;
   if (e->dt > 0 && c->wall < m->contact->n_walls)
     wall_motion(m->walls, c->wall, e->time, e->time + e->dt, c->x, c->swept);
   if (c->section == 0 || (e->dt > 0 ? c->gone : is_still_to_come(m, e, c))) return;

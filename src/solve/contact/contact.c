@@ -18,6 +18,8 @@ PetscErrorCode ContactCreate(const Case *c, Walls *walls, Diag *diag, Contact **
   (*contact)->n_walls = c->n_walls;
   (*contact)->n_partners = c->n_walls + c->n_interfaces;
   (*contact)->sides = contact_sides(c);
+  PetscCall(PetscCalloc1(c->n_walls, &(*contact)->turns));
+  for (PetscInt k = 0; k < c->n_walls; ++k) (*contact)->turns[k] = wall_turns(c->walls + k);
   PetscCall(RigidCreate(c, walls, diag, &(*contact)->n_rigid, &(*contact)->rigid));
   PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->wall));
   PetscCall(PetscCalloc1((*contact)->n_partners, &(*contact)->impulse));
@@ -44,6 +46,7 @@ PetscErrorCode ContactDestroy(Contact **contact)
   PetscCall(PetscFree(s->slot));
   PetscCall(PetscFree(s->divisor));
   PetscCall(PetscFree(s->least));
+  PetscCall(PetscFree(s->turns));
   PetscCall(PetscFree(s->wall));
   PetscCall(PetscFree(s->rigid));
   PetscCall(PetscFree(s->impulse));

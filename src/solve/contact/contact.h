@@ -64,7 +64,9 @@ typedef struct {
   PetscBool inner;     /* has its point none of the body's surface that looks at the partner? */
   PetscBool covered;   /* does its surface touch after the step? See ContactCover */
   PetscReal gap;       /* at the last assembly, m */
-  PetscReal normal[3]; /* at the last assembly */
+  PetscReal normal[3]; /* at the last assembly, */
+  PetscReal push[3];   /* and that of the force, which may be the one of the middle of the way: */
+  PetscBool halfway;
   PetscReal facing[3]; /* at the start of the step, as the owner sees it */
   PetscReal slip[3];   /* likewise: motion against the wall, m */
   PetscReal last[3];   /* force of the last step, its mean if matter has inertia, N */
@@ -110,6 +112,7 @@ typedef struct Contact {
   RigidWall *rigid; /* walls with mass */
   PetscInt dim, n_walls;
   PetscBool hoop;      /* do all turn about x = 0? */
+  PetscBool *turns;    /* n_walls: may its normals turn within a step? See wall_turns */
   PetscInt n_partners; /* walls and interfaces */
   PetscInt sides;      /* of each that may meet one carrier: contact_sides */
   PetscInt n, capacity;
@@ -246,7 +249,7 @@ PetscErrorCode ContactLend(Contact *contact, const Grid *grid, PetscBool starts,
 
 /* What a wall does to the surface of the material at one place. */
 typedef struct {
-  PetscReal x[3], normal[3];    /* at the end of the step, m */
+  PetscReal x[3], normal[3];    /* at the end of the step, m; that of its force */
   PetscReal pressure, shear[3]; /* Pa: along the normal, across it */
   PetscReal section, force[3];  /* of the contact point alone, m2, N */
 } ContactTraction;
@@ -296,9 +299,9 @@ PetscErrorCode RigidTangent(Contact *contact, const NodalScene *scene, PetscReal
 /* In statics that holds motions which nothing resists where they are: along which unknown of the wall does most act of
  * such? -1: nothing does. */
 int rigid_adrift(const RigidWall *wall);
-/* The law at the present increments; K: minus its derivative by the motion of the contact point, or NULL.
+/* The law at the present increments; tangent: by the motion of the contact point, or NULL.
  * PETSC_FALSE where there is no contact. */
-PetscBool contact_meets(const Contact *contact, ContactPoint *c, const NodalScene *scene, PetscReal *K);
+PetscBool contact_meets(const Contact *contact, ContactPoint *c, const NodalScene *scene, ContactTangent *tangent);
 /* contact_force.c, contact_multiplier.c: what the nodal force does. */
 PetscErrorCode ContactAssemble(void *contact, const NodalScene *scene, const NodalOutput *out);
 PetscErrorCode ContactAugment(void *contact, const NodalScene *scene, PetscInt change, PetscBool *again);

@@ -108,7 +108,7 @@ void contact_remember(ContactPoint *c, PetscInt dim, const PetscReal *kept, cons
   for (PetscInt d = 0; d < dim; ++d) c->last[d] = kept[KEPT_FORCE + d];
   c->stays = kept[KEPT_STAYS(dim)];
   c->state = c->before;
-  for (int d = 0; d < 3; ++d) c->normal[d] = c->facing[d] = normal[d];
+  for (int d = 0; d < 3; ++d) c->normal[d] = c->push[d] = c->facing[d] = normal[d];
 }
 
 void contact_stand(Contact *s, PetscReal share)

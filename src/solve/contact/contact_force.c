@@ -75,11 +75,12 @@ static void stay_open(ContactPoint *c)
   c->gap = PETSC_MAX_REAL;
 }
 
-PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *scene, PetscReal *K)
+PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *scene, ContactTangent *tangent)
 {
   const RigidWall *rigid = contact_rigid(s, c);
   PetscReal way[3], x[3];
   WallPlace place;
+  ContactPlace pushes;
   take_way(s, c, scene->du, scene->whole, way);
   for (int d = 0; d < 3; ++d) x[d] = c->x[d] + way[d];
   if (rigid) rigid_sweep(rigid, c->x, x, c->swept);
@@ -88,18 +89,22 @@ PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *sce
   c->ahead = c->reach;
   if (rigid) c->passed = contact_let_pass(c, c->swept, c->let); /* of others it is known */
   if (!place_of(s, c, scene->end, x, way, &place)) return PETSC_FALSE;
-  place.gap += c->passed;
-  place.gap += s->share.leaves * PetscMax(0, -(c->open + c->passed));
-  for (int d = 0; d < 3; ++d) c->slip[d] = way[d] - c->swept[d] + c->let[d], c->normal[d] = place.normal[d];
-  c->gap = place.gap;
+  pushes = c->halfway ? contact_halfway(&place, c->facing, c->open - c->behind) : contact_straight(&place);
+  pushes.at.gap += c->passed;
+  pushes.at.gap += s->share.leaves * PetscMax(0, -(c->open + c->passed));
+  for (int d = 0; d < 3; ++d) {
+    c->slip[d] = way[d] - c->swept[d] + c->let[d];
+    c->normal[d] = place.normal[d], c->push[d] = pushes.push[d];
+  }
+  c->gap = pushes.at.gap;
   c->law.grips = (PetscBool)(s->grips && contact_touched(c));
-  c->state = contact_law(&c->law, &place, c->slip, &c->multiplier, &c->now, K);
+  c->state = contact_law(&c->law, &pushes, c->slip, &c->multiplier, &c->now, tangent);
   return c->state != CONTACT_OPEN;
 }
 
 void contact_force(const ContactPoint *c, PetscReal f[3])
 {
-  for (int d = 0; d < 3; ++d) f[d] = c->now.pressure * c->normal[d] + c->now.shear[d];
+  for (int d = 0; d < 3; ++d) f[d] = c->now.pressure * c->push[d] + c->now.shear[d];
 }
 
 void contact_acts(const ContactPoint *c, PetscReal f[3])
@@ -118,7 +123,7 @@ PetscReal contact_stays(const Contact *s, const ContactPoint *c)
 {
   const PetscReal now = s->share.mean * c->now.pressure;
   PetscReal before = 0;
-  for (int d = 0; d < 3; ++d) before += c->last[d] * c->normal[d];
+  for (int d = 0; d < 3; ++d) before += c->last[d] * c->push[d];
   if (!s->share.inertia) return 1;
   return now == 0 ? 0 : PetscMax(0, PetscMin(1, before / now));
 }
@@ -190,7 +195,7 @@ PetscErrorCode ContactAssemble(void *data, const NodalScene *scene, const NodalO
 {
   const Contact *s = data;
   const PetscReal motion = largest_motion(s, scene);
-  PetscReal K[9];
+  ContactTangent tangent;
 
   PetscFunctionBeginUser;
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
@@ -199,9 +204,9 @@ PetscErrorCode ContactAssemble(void *data, const NodalScene *scene, const NodalO
       c->gap = c->open; /* within what it moves */
       continue;
     }
-    const PetscBool meets = contact_meets(s, c, scene, out->system ? K : NULL);
+    const PetscBool meets = contact_meets(s, c, scene, out->system ? &tangent : NULL);
     add_force(s, c, out->away ? -1 : 1, out->force);
-    if (out->system && meets) add_tangent(s, c, scene, K, out);
+    if (out->system && meets) add_tangent(s, c, scene, tangent.K, out);
   }
   PetscCall(RigidSums(data, scene));
   PetscFunctionReturn(0);

@@ -122,6 +122,12 @@ static PetscReal spread_of(const Contact *s, const ContactPoint *c)
   return sum;
 }
 
+/* What is bonded goes along with its wall in all directions: which of them is called normal is all the same. */
+static PetscBool pushes_halfway(const Contact *s, const ContactPoint *c)
+{
+  return (PetscBool)(s->share.moves && c->law.kind != CONTACT_BONDED && c->wall < s->n_walls && s->turns[c->wall]);
+}
+
 void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, ContactShare share)
 {
   s->share = share;
@@ -136,6 +142,7 @@ void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, C
     for (int d = 0; d < 3; ++d) c->struck[d] = c->lent[d] = 0;
     for (int d = 0; d < 3 && c->before == CONTACT_OPEN; ++d) c->last[d] = 0; /* explicit dynamics keeps slips there */
     c->law.bond = c->bond / share.mean;
+    c->halfway = pushes_halfway(s, c);
     if (c->wall < s->n_walls && !contact_rigid(s, c)) sweep(s, c, t, dt);
     first_multiplier(s, c);
   }
@@ -204,9 +211,9 @@ static PetscReal slip_of(const ContactPoint *c)
 {
   PetscReal again[3], away = 0, square = 0, left = 0;
   if (c->state == CONTACT_OPEN || c->law.kind == CONTACT_FRICTIONLESS) return 0;
-  for (int d = 0; d < 3; ++d) away += c->slip[d] * c->normal[d];
+  for (int d = 0; d < 3; ++d) away += c->slip[d] * c->push[d];
   for (int d = 0; d < 3; ++d) {
-    again[d] = c->now.shear[d] - c->law.along * (c->slip[d] - away * c->normal[d]);
+    again[d] = c->now.shear[d] - c->law.along * (c->slip[d] - away * c->push[d]);
     square += PetscSqr(again[d]);
   }
   const PetscReal most = c->law.kind == CONTACT_BONDED ? PETSC_MAX_REAL : contact_most(&c->law, c->now.pressure);

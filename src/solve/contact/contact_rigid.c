@@ -84,31 +84,33 @@ PetscErrorCode RigidHold(Contact *s, const NodalScene *scene)
   PetscFunctionReturn(0);
 }
 
-/* One contact point: its force f, K, and levers. */
+/* One contact point: its force f, tangent, and levers. */
 typedef struct {
   const ContactPoint *c;
-  PetscReal f[3], K[9], motion[RIGID][3], arm[RIGID][3], change[RIGID][3]; /* arm: by the lever of torques */
+  ContactTangent tangent;
+  PetscReal f[3], motion[RIGID][3], arm[RIGID][3], change[RIGID][3]; /* arm: by the lever of torques */
 } Touch;
 
 static PetscBool touch_of(const Contact *s, ContactPoint *c, const RigidWall *b, const NodalScene *scene, Touch *t)
 {
   PetscReal x[3], at[3], lever[3];
-  if (!contact_meets(s, c, scene, t->K)) return PETSC_FALSE;
+  if (!contact_meets(s, c, scene, &t->tangent)) return PETSC_FALSE;
   t->c = c;
   contact_force(c, t->f);
   contact_place(s, c, scene->du, scene->whole, x);
   rigid_arm(b, PETSC_FALSE, x, at);
   rigid_lever(b, c->x, x, lever);
   for (int i = 0; i < RIGID; ++i) {
-    PetscReal axis[3] = {0, 0, 0}, let[3], counts[3];
+    PetscReal axis[3] = {0, 0, 0}, let[3], counts[3], turned[3];
     if (i > 2) rigid_turns(b, i - 3, axis);
     vector_cross(axis, at, t->motion[i]);
     if (i < 3) t->motion[i][i] = 1;
     motion_of(i, lever, t->arm[i]);
-    vector_cross(axis, t->f, t->change[i]); /* the force turns with its wall */
+    vector_cross(axis, c->normal, turned); /* with the wall, and the force with it */
     contact_lets(c, t->motion[i], let);
     for (int d = 0; d < 3; ++d) counts[d] = t->motion[i][d] - let[d];
-    for (int d = 0; d < 3; ++d) t->change[i][d] += vector_dot(t->K + 3 * d, counts);
+    for (int d = 0; d < 3; ++d)
+      t->change[i][d] = vector_dot(t->tangent.K + 3 * d, counts) - vector_dot(t->tangent.turn + 3 * d, turned);
   }
   return PETSC_TRUE;
 }
@@ -145,7 +147,7 @@ static void add_rows(const Contact *s, const RigidWall *b, const Touch *t, Petsc
   const PetscInt first = RIGID * (b - s->rigid);
   for (int i = 0; i < RIGID; ++i)
     for (PetscInt d = 0; d < s->dim; ++d) {
-      const PetscReal column[3] = {t->K[d], t->K[3 + d], t->K[6 + d]};
+      const PetscReal *K = t->tangent.K, column[3] = {K[d], K[3 + d], K[6 + d]};
       PetscReal longer[3] = {0, 0, 0};
       if (!rigid_has(b, i)) continue;
       if (i > 2) cross_axis((int)d, t->f, longer);

@@ -195,7 +195,7 @@ void rigid_begin(RigidWall *b, Walls *walls, const Case *c, PetscReal t, PetscRe
 {
   b->dt = case_is_static(&c->analysis) ? 0 : dt;
   b->share = share;
-  b->part = middle || (b->dt > 0 && c->walls[b->wall].contact == CONTACT_BONDED) ? 0.5 : 1;
+  b->part = b->dt > 0 ? 0.5 : 1;
   b->now.step = dt;
   b->stands = wall_stands(walls, b->wall, t + dt);
   for (int i = 0; i < RIGID * RIGID; ++i) b->borne[i] = 0;

@@ -5,9 +5,8 @@
  *
  *   M (v1 - v) = dt F,  d = dt (v + v1) / 2;   R1 J W1 - R J W = dt T,  R1 = R exp(dt (W + W1) / 2),
  *
- * the torque T about the centre where forces act, at the step's end or in its middle: momentum and energy are exact
- * for any dt, its moment with the midpoint rule (Simo and Wong 1991). In statics forces and
- * torques balance at the end. All ranks have the same numbers. */
+ * the torque T about the centre where forces act, in the middle of the step: momentum, its moment and energy are exact
+ * for any dt (Simo and Wong 1991). In statics forces and torques balance at the end. All ranks have the same numbers. */
 #pragma once
 #include "wall/wall.h"
 
@@ -32,7 +31,7 @@ typedef struct {
   RigidState now, start;    /* in the step, and as it began */
   PetscBool stands;         /* in this step */
   PetscReal dt, share;      /* dt 0: statics; share: the mean of contact over what the balance asks for */
-  PetscReal part;           /* of the step at which forces have their levers: 1, in the midpoint rule and bonded 1/2 */
+  PetscReal part;           /* of the step at which forces have their levers: 1/2, in statics 1 */
   PetscReal load[2][RIGID]; /* weight, force and torque at the step's start and end */
   PetscReal held[RIGID];    /* what more contact bore when the stage began: it fades (forces/release.h) */
   PetscReal q[RIGID];       /* increments: translation d, and theta of exp(theta), m, rad */

@@ -22,7 +22,7 @@ static PetscBool takes_part(const ContactPoint *c, PetscInt wall)
 /* Of one point to one node: force and surface, and with the normal n of this n A, n n A, and f n. */
 static void hand(const ContactPoint *c, PetscReal weight, PetscReal share, const PetscReal f[3], PetscReal *at)
 {
-  const PetscReal *n = c->normal, area = weight * c->section;
+  const PetscReal *n = c->push, area = weight * c->section;
   for (int i = 0; i < 3; ++i) {
     at[AT_FORCE + i] += weight * share * f[i];
     at[AT_NORMAL + i] += area * n[i];
@@ -84,11 +84,11 @@ static void from_nodes(const Contact *s, const ContactPoint *c, const PetscReal 
     const PetscReal *at = nodes + AT_ALL * s->node[e], weight = contact_weight(s, e);
     if (!(at[AT_SURFACE] > 0)) continue;
     sum += weight;
-    traction_at(at, c->normal, of_node);
+    traction_at(at, c->push, of_node);
     for (int d = 0; d < 3; ++d) traction[d] += weight * of_node[d];
   }
   t->pressure = 0;
-  for (int d = 0; d < 3; ++d) t->normal[d] = c->normal[d], t->pressure += traction[d] * c->normal[d] / sum;
+  for (int d = 0; d < 3; ++d) t->normal[d] = c->push[d], t->pressure += traction[d] * c->push[d] / sum;
   for (int d = 0; d < 3; ++d) t->shear[d] = traction[d] / sum - t->pressure * c->normal[d];
 }
 
