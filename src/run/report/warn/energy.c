@@ -127,17 +127,25 @@ static PetscBool hint_of_scheme(const Model *m, PetscReal share, Diag *diag)
   return (PetscBool)(share < 0 || !materials_yield(m->c->n_materials, m->materials));
 }
 
+/* Within a step a body is flat to another one (docs/theory.md, section 84). */
+static const char *contact_takes(const Model *m)
+{
+  if (m->c->analysis.type == ANALYSIS_EXPLICIT)
+    return "springs of what touches store a part of it, and their dashpots take what swings until it rests; "
+           "smaller cells lessen it; measure {energy: transfer} shows when (docs/theory.md, section 34)";
+  if (m->c->n_interfaces > 0 && m->scheme->inertia)
+    return "steps in which contact opens, closes or begins to slide count its work by the mean of their ends, and "
+           "round faces of bodies drive what slides along them by v dt / (2 R) of its force: shorter ones lessen it; "
+           "measure {energy: transfer} shows when (docs/guide/limits.md)";
+  return "steps in which contact opens, closes or begins to slide count its work by the mean of their ends: shorter "
+         "ones lessen it; measure {energy: transfer} shows when (docs/theory.md, Energy)";
+}
+
 /* PETSC_FALSE: none. */
 static PetscBool hint_of_contact(const Model *m, Diag *diag)
 {
-  const PetscBool sprung = (PetscBool)(m->c->analysis.type == ANALYSIS_EXPLICIT);
-  if (!m->contact || (!sprung && m->method->restores_grid)) return PETSC_FALSE;
-  diag_hint(diag, "%s",
-            sprung
-              ? "springs of what touches store a part of it, and their dashpots take what swings until it rests; "
-                "smaller cells lessen it; measure {energy: transfer} shows when (docs/theory.md, section 34)"
-              : "steps in which contact opens, closes or begins to slide count its work by the mean of their ends: "
-                "shorter ones lessen it; measure {energy: transfer} shows when (docs/theory.md, Energy)");
+  if (!m->contact || (m->c->analysis.type != ANALYSIS_EXPLICIT && m->method->restores_grid)) return PETSC_FALSE;
+  diag_hint(diag, "%s", contact_takes(m));
   return PETSC_TRUE;
 }
 
