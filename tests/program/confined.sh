@@ -72,4 +72,8 @@ for method in fem mpm; do
   says err.txt "nothing determines the level of the pressure in 'c'"
   expect "free at its top, $method" 0 "$talus" check column.yaml --set method=$method --set materials.m.poisson=0.5
 done
+expect "free at its end, in long cells" 0 "$talus" check column.yaml --set method=fem --set materials.m.poisson=0.5 \
+  --set 'grid={box: {min: [0, 0], max: [100, 0.1]}, counts: [10, 1]}' \
+  --set 'bodies=[{name: c, shape: {box: {min: [0, 0], max: [100, 0.1]}}, points_per_cell: 4, material: m}]' \
+  --set 'boundary=[{on: {x: 0}, fix: [x]}, {on: {y: 0}, fix: [y]}, {on: {y: 0.1}, fix: [y]}]' --set measures=null
 finish

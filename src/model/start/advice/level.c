@@ -34,26 +34,29 @@ static void find_yielding(const Model *m, const PetscReal *of, PetscInt *yields)
       if (m->materials[m->points->material[p]].compliance > 0) yields[(PetscInt)of[w->node[w->node_start[g]]] - 1] = 1;
 }
 
-/* Of each body, and those it is one with: the largest push on a node that may give way, over the largest of all. */
+/* Of each body, and those it is one with: the largest push on a node that may give way, over the largest that nodes
+ * get, along the axis in which that is most: across slender cells a pressure has more to push on than along them. */
 static PetscErrorCode FindPushed(const Model *m, const PetscReal *of, PetscReal *pushed)
 {
   const PetscInt dim = m->dim, n = m->grid->n_nodes * dim, bodies = m->c->n_bodies;
-  PetscReal *force, *most;
+  PetscReal *force, *free, *most;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc2(2 * n, &force, 2 * bodies, &most));
+  PetscCall(PetscCalloc3(2 * n, &force, bodies * dim, &free, bodies * dim, &most));
   push(m, force);
   for (int k = 0; k < 2; ++k) PetscCall(GridSumToOwners(m->grid, dim, force + k * n));
   frames_turn(&m->boundary->frames, dim, force);
   for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
-    const PetscInt b = (PetscInt)of[i / dim] - 1;
+    const PetscInt b = (PetscInt)of[i / dim] - 1, at = b * dim + i % dim;
     if (b < 0) continue;
-    most[bodies + b] = PetscMax(most[bodies + b], force[n + i]);
-    if (!m->boundary->fixed[i]) most[b] = PetscMax(most[b], PetscAbsReal(force[i]));
+    most[at] = PetscMax(most[at], force[n + i]);
+    if (!m->boundary->fixed[i]) free[at] = PetscMax(free[at], PetscAbsReal(force[i]));
   }
-  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, most, (PetscMPIInt)(2 * bodies), MPIU_REAL, MPIU_MAX, m->comm));
-  for (PetscInt b = 0; b < bodies; ++b) pushed[b] = most[bodies + b] > 0 ? most[b] / most[bodies + b] : 1;
-  PetscCall(PetscFree2(force, most));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, free, (PetscMPIInt)(bodies * dim), MPIU_REAL, MPIU_MAX, m->comm));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, most, (PetscMPIInt)(bodies * dim), MPIU_REAL, MPIU_MAX, m->comm));
+  for (PetscInt at = 0; at < bodies * dim; ++at)
+    pushed[at / dim] = PetscMax(pushed[at / dim], most[at] > 0 ? free[at] / most[at] : 1);
+  PetscCall(PetscFree3(force, free, most));
   PetscFunctionReturn(0);
 }
 
