@@ -599,6 +599,9 @@ expect "a pressed block" 0 "$talus" run case.yaml --out pressed --force --quiet
 ! grep -q "a loaded surface has moved" err.txt || fail "$name: $(cat err.txt)"
 expect "a pressed block of the mixed formulation" 0 "$talus" run case.yaml --set formulation=mixed --out pressed --force --quiet
 grep -q "a loaded surface has moved by .* cells: with the mixed formulation" err.txt || fail "$name: does not warn"
+expect "a block that its weight presses, and a load of 0" 0 "$talus" run case.yaml --set formulation=mixed --out pressed --force --quiet \
+  --set 'loads={gravity: [0, -600], pressures: [{on: {body: b, y: 1}, value: 0}]}'
+lacks err.txt "a loaded surface has moved"
 
 # --- a circular cone in plane strain: sin phi = 6 sin 35 / sqrt(3) (3 - sin 35), c = 20 kPa tan phi / tan 35 ---
 sed -i -e 's/law: neo-hookean.*/law: drucker-prager, density: 1, young: 1e8, poisson: 0.3, friction_angle: 35, cohesion: 20e3}}/' case.yaml
