@@ -41,15 +41,19 @@ typedef struct {
   PetscReal power;             /* of gravity on the relative motion, W */
 } Motion;
 
-/* Velocity of the container where the point is: the mean of the step, which nodes that are held take
- * over. */
+/* Of a step: its last part, over whose parabola velocities are those of its end. */
+#define INSTANT (1. / 16)
+
+/* Velocity of the container where the point is, at the end of the step, as nodes that are held have it. */
 static void container_velocity(const Model *m, const MeasureSpec *s, PetscInt p, PetscReal dt, PetscReal v[3])
 {
   const MotionSpec *container = &m->c->boundary[s->avalanche.container];
-  const PetscReal *x = point_real(m->points, POINT_X, p);
+  const PetscReal *x = point_real(m->points, POINT_X, p), part = INSTANT * dt, begin = m->time - part;
   for (PetscInt d = 0; d < m->dim; ++d) v[d] = 0;
   for (PetscInt d = 0; s->avalanche.has_container && dt > 0 && d < m->dim; ++d)
-    v[d] = motion_increment(m->c, container, x, d, m->time - dt, m->time) / dt;
+    v[d] = (3 * motion_increment(m->c, container, x, d, begin, m->time) -
+            4 * motion_increment(m->c, container, x, d, begin, begin + part / 2)) /
+           part;
 }
 
 /* Collective. carry >= 0: what the points go in the step relative to the container is added to this
@@ -155,13 +159,14 @@ static PetscErrorCode NoteEnd(Model *m, const MeasureSpec *s, PetscReal *state)
 }
 
 /* While nothing slides: the usual energy, and the threshold that follows from it. */
-static void follow_creep(const MeasureSpec *s, const Motion *motion, PetscReal dt, PetscReal *state)
+static void follow_creep(const Model *m, const MeasureSpec *s, const Motion *motion, PetscReal dt, PetscReal *state)
 {
   const AvalancheSpec *a = &s->avalanche;
   const PetscReal weight = state[STATE_CREEP] < 0 ? 1 : 1 - PetscExpReal(-dt / a->creep);
   state[STATE_CREEP] = (1 - weight) * PetscMax(0, state[STATE_CREEP]) + weight * motion->relative;
   if (state[STATE_PHASE] == SLIDING) return;
-  const PetscReal high = a->times > 0 ? a->times * PetscMax(state[STATE_CREEP], motion->carried) : a->kinetic;
+  const PetscReal usual = PetscMax(state[STATE_CREEP], motion->carried);
+  const PetscReal high = a->times > 0 ? PetscMax(a->times * usual, energy_unresolved(m)) : a->kinetic;
   /* what is stirring must reach the threshold of its beginning, since creep follows it; creep that
    * stays higher ends it */
   if (state[STATE_PHASE] == QUIET) state[STATE_HIGH] = high;
@@ -201,7 +206,7 @@ static PetscErrorCode RememberAvalanches(Model *m, const MeasureSpec *s, PetscRe
   if (dt == 0 || m->time < s->avalanche.from) PetscFunctionReturn(0);
   PetscReal *state = memory->list, row[EVENT_N];
   PetscCall(FindMotion(m, s, dt, state[STATE_PHASE] != QUIET ? carried_component(m, s) : -1, &motion));
-  if (state[STATE_PHASE] != SLIDING || state[STATE_CALM] >= 0) follow_creep(s, &motion, dt, state);
+  if (state[STATE_PHASE] != SLIDING || state[STATE_CALM] >= 0) follow_creep(m, s, &motion, dt, state);
   if (state[STATE_PHASE] != QUIET) PetscCall(Slide(m, s, dt, &motion, state));
   else if (motion.relative > state[STATE_LOW]) PetscCall(Begin(m, s, &motion, state));
   if (state[STATE_PHASE] != SLIDING || state[STATE_CALM] < 0) PetscFunctionReturn(0);
