@@ -6,7 +6,8 @@
  *   M (v1 - v) = dt F,  d = dt (v + v1) / 2;   R1 J W1 - R J W = dt T,  R1 = R exp(dt (W + W1) / 2),
  *
  * the torque T about the centre where forces act, in the middle of the step: momentum, its moment and energy are exact
- * for any dt (Simo and Wong 1991). In statics forces and torques balance at the end. All ranks have the same numbers. */
+ * for any dt (Simo and Wong 1991). In statics forces and torques balance at the end. All ranks have the same
+ * numbers. */
 #pragma once
 #include "wall/wall.h"
 
