@@ -56,6 +56,11 @@ PetscErrorCode LoadsPush(const Loads *loads, const Grid *grid, PetscReal t, cons
                          const unsigned char *touched, PetscReal *residual);
 
 void carrier_shape(const Loads *loads, const Grid *grid, PetscInt p, const unsigned char *touched, CarrierShape *shape);
+static inline PetscBool carrier_pushes(const Loads *loads, PetscInt p)
+{
+  return load_pushes(loads->c->loads + loads->carriers->body[p]);
+}
+
 /* Are carriers pieces of a surface, with edges that go with it? */
 static inline PetscBool loads_have_pieces(const Loads *loads)
 {

@@ -353,6 +353,6 @@ PetscInt case_acting_loads(const Case *c)
 PetscBool case_load_follows(const Case *c)
 {
   for (PetscInt k = 0; k < case_acting_loads(c); ++k)
-    if (c->loads[k].kind == LOAD_PRESSURE) return PETSC_TRUE;
+    if (c->loads[k].kind == LOAD_PRESSURE && load_pushes(c->loads + k)) return PETSC_TRUE;
   return PETSC_FALSE;
 }

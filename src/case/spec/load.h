@@ -17,6 +17,12 @@ typedef struct {
   PetscInt waits;
 } LoadSpec;
 
+/* A load of 0 pushes nothing, whatever its factors: what it stands on is as free as any other surface. */
+static inline PetscBool load_pushes(const LoadSpec *load)
+{
+  return (PetscBool)(load->value[0] != 0 || load->value[1] != 0 || load->value[2] != 0);
+}
+
 /* What the formula of a load may name: x y z, where the material is when the step begins, X Y Z, where
  * it was undeformed (m), and t, s. */
 typedef struct {

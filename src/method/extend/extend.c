@@ -97,13 +97,13 @@ static PetscErrorCode Rewrite(const Discretisation *s, const Seen *seen, Support
   Row row;
 
   PetscFunctionBeginUser;
-  for (PetscInt p = 0; p < old->n_groups; ++p) room += sees_follower(s, old, p) ? WAYS : 0;
+  for (PetscInt p = 0; p < old->n_groups; ++p) room += changes_row(s, seen, p) ? WAYS : 0;
   PetscCall(SupportReserve(out, old->n_groups, room, room, slopes));
   for (PetscInt p = 0; p < old->n_groups; ++p) {
     const PetscInt from = old->node_start[p], nn = support_nodes(old, p);
     const PetscInt *node = old->node + from;
     const PetscReal *N = old->N + from, *dN = old->dN + from * slopes;
-    const PetscBool changes = sees_follower(s, old, p);
+    const PetscBool changes = changes_row(s, seen, p);
     product_group(out, p, n);
     if (changes) (void)sum_row(s, slopes, nn, node, N, dN, &row);
     if (changes) PetscCall(CopyRow(out, slopes, row.n, n, row.node, row.N, row.dN));
@@ -162,13 +162,6 @@ PetscErrorCode DiscretisationCarry(Discretisation *s, const BasisInput *in)
   PetscFunctionReturn(0);
 }
 
-/* A load of 0 pushes nothing, whatever its factors: what it stands on is as free as any other surface. */
-static PetscBool may_push(const Loads *loads, PetscInt carrier)
-{
-  const PetscReal *value = loads->c->loads[loads->carriers->body[carrier]].value;
-  return (PetscBool)(value[0] != 0 || value[1] != 0 || value[2] != 0);
-}
-
 PetscErrorCode ExtensionLoaded(const Discretisation *s)
 {
   Extension *e = s->extension;
@@ -179,7 +172,7 @@ PetscErrorCode ExtensionLoaded(const Discretisation *s)
   if (!s->basis->carry) PetscFunctionReturn(0);
   for (PetscInt g = 0; g < w->n_groups; ++g) {
     PetscBool push = PETSC_FALSE;
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) push |= may_push(s->loads, p);
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) push |= carrier_pushes(s->loads, p);
     for (PetscInt i = w->node_start[g]; push && i < w->node_start[g + 1]; ++i) e->loaded[w->node[i]] = 1;
   }
   PetscCall(GridSumToOwners(s->grid, 1, e->loaded));

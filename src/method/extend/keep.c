@@ -3,14 +3,16 @@
 
 #define ALL -1
 
-Seen seen_by_points(const Discretisation *s) { return (Seen){s->points, s->support, s->grid->dim}; }
+Seen seen_by_points(const Discretisation *s) { return (Seen){s->points, s->support, s->grid->dim, NULL}; }
 Seen seen_by_carriers(const Discretisation *s)
 {
-  return (Seen){s->loads->carriers, s->extension->carried, s->loads->slopes};
+  return (Seen){s->loads->carriers, s->extension->carried, s->loads->slopes, s->loads};
 }
 
-PetscBool sees_follower(const Discretisation *s, const Support *w, PetscInt p)
+PetscBool changes_row(const Discretisation *s, const Seen *seen, PetscInt p)
 {
+  const Support *w = seen->support;
+  if (seen->loads && !carrier_pushes(seen->loads, p)) return PETSC_FALSE;
   for (PetscInt I = w->node_start[p]; I < w->node_start[p + 1]; ++I)
     if (s->extension->ways[w->node[I]] > 0) return PETSC_TRUE;
   return PETSC_FALSE;
@@ -94,7 +96,7 @@ static void mark_seen(const Discretisation *s, const Seen *seen, PetscInt p, Pet
 static void mark_lookers(const Discretisation *s, const Seen *seen, PetscReal *needed)
 {
   for (PetscInt p = 0; p < seen->support->n_groups; ++p)
-    if (sees_follower(s, seen->support, p) && !sees_near(s, seen, p, ALL)) mark_seen(s, seen, p, needed);
+    if (changes_row(s, seen, p) && !sees_near(s, seen, p, ALL)) mark_seen(s, seen, p, needed);
 }
 
 /* And those that loads act on by functions of their cells. */
@@ -103,7 +105,7 @@ static void mark_loaded(const Discretisation *s, PetscReal *needed)
   const Points *carriers = s->loads->carriers;
   const PetscInt nn = s->grid->nodes_per_cell;
   for (PetscInt p = 0; p < carriers->n; ++p)
-    for (PetscInt I = 0; carriers->cell[p] >= 0 && I < nn; ++I)
+    for (PetscInt I = 0; carriers->cell[p] >= 0 && carrier_pushes(s->loads, p) && I < nn; ++I)
       needed[s->grid->cell_node[carriers->cell[p] * nn + I]] = 1;
 }
 

@@ -87,8 +87,6 @@ static PetscInt largest_of(const LoadSpec *load)
   return d;
 }
 
-static PetscBool is_zero(const LoadSpec *load) { return (PetscBool)(load->value[largest_of(load)] == 0); }
-
 #define BESIDE 1e-9 /* of how far it is from the origin: a point that stands on the surface of its body */
 
 /* Does it act on the body? A point load acts on what is at its place. unknown: the answer where the case does not
@@ -125,7 +123,7 @@ static PetscBool may_wait(const Case *c, const Case *before, const LoadSpec *loa
 /* Carriers of a load of 0 know no more of the surface that they stand for. */
 static PetscBool has_lost_surface(const LoadSpec *before, const LoadSpec *load)
 {
-  return (PetscBool)(load->kind != LOAD_POINT && is_zero(before) && !is_zero(load));
+  return (PetscBool)(load->kind != LOAD_POINT && !load_pushes(before) && load_pushes(load));
 }
 
 static LoadSpec waiting(const LoadSpec *load, PetscInt stage)
@@ -207,9 +205,9 @@ PetscErrorCode LoadsCheck(const Case *c, const Case *from, Diag *diag)
 static void change_force(const LoadSpec *load, const LoadSpec *before, PetscInt dim, PetscReal *force)
 {
   const PetscInt d = largest_of(before);
-  const PetscReal area = is_zero(before) ? 0 : force[d] / before->value[d];
+  const PetscReal area = load_pushes(before) ? force[d] / before->value[d] : 0;
   for (PetscInt i = 0; i < dim; ++i)
-    force[i] = load->kind == LOAD_PRESSURE ? (is_zero(before) ? 0 : force[i] / before->value[0] * load->value[0])
+    force[i] = load->kind == LOAD_PRESSURE ? (load_pushes(before) ? force[i] / before->value[0] * load->value[0] : 0)
                                            : (load->kind == LOAD_POINT ? 1 : area) * load->value[i];
 }
 

@@ -377,7 +377,7 @@ PetscReal unheld_open_surface(const Model *m)
   for (PetscInt k = 0; k < case_acting_loads(m->c); ++k) {
     const LoadSpec *load = &m->c->loads[k];
     const Selector *on = &load->on;
-    if (load->kind != LOAD_PRESSURE) continue;
+    if (load->kind != LOAD_PRESSURE || !load_pushes(load)) continue;
     if (!on->body || on->boundary || on->has_shape || on->has[0] || on->has[1] || on->has[2]) return OPEN;
     if (load->factor || m->loads->asked[k].ask) return OPEN;
   }

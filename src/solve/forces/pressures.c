@@ -79,7 +79,8 @@ static PetscErrorCode Begin(void *data, const NodalScene *scene)
   s->n = s->n_nodes = s->n_slots = 0;
   s->asked = PETSC_FALSE;
   for (PetscInt p = 0; p < carriers->n; ++p)
-    if (scene->c->loads[carriers->body[p]].kind == LOAD_PRESSURE) PetscCall(Add(s, scene, p));
+    if (scene->c->loads[carriers->body[p]].kind == LOAD_PRESSURE && carrier_pushes(s->loads, p))
+      PetscCall(Add(s, scene, p));
   PetscFunctionReturn(0);
 }
 
