@@ -49,6 +49,31 @@ for ranks in 1 2; do
   awk -F, 'END { exit !($3 == 2 && $4 > 2.99 && $4 < 3.01) }' turns/history.csv || fail "$name: $(tail -n 1 turns/history.csv)"
 done
 
+# Momentum is impulse from the first step of a stage on whose nodes follow others than before: of none in explicit steps
+# (895 of 135,070 N were missing), of more with another transfer.
+cat >slides.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: explicit, end: 0.02, step: 0.01}
+grid: {box: {min: [-1, -0.5], max: [1.5, 1.5]}, size: 0.25}
+bodies: [{name: block, shape: {box: {min: [-0.45, 0], max: [0.53, 0.98]}}, material: rubber, velocity: [3, -3]}]
+materials: {rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+walls: [{name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, friction: 0.2}]
+loads: {gravity: [0, -10]}
+measures: {mx: {momentum: x}, my: {momentum: y}, fx: {wall_force: x, of: {wall: floor}}, fy: {wall_force: y, of: {wall: floor}}}
+stages:
+  - name: lands
+  - {name: slides, analysis: {type: dynamic, end: 0.01, step: 0.005, transfer: thesis}}
+END
+for case in explicit 'dynamic, scheme: newmark, transfer: consistent'; do
+  for ranks in 1 2; do
+    expect "from $case, on $ranks" 0 on_ranks $ranks "$talus" run slides.yaml --out slides --force --quiet \
+      --set "analysis={type: $case, end: 0.02, step: 0.01}"
+    awk -F, 'NR > 1 && $3 == 2 { n += 1; dt = $1 - t; x = ($4 - mx) / dt - $6; y = ($5 - my) / dt - $7 + 9604; if (x * x + y * y > 1e-4) { bad = 1; print x, y } }
+      { t = $1; mx = $4; my = $5 } END { exit bad || n != 2 }' slides/history.csv >out.txt || fail "$name: $(head -n 1 out.txt) N are missing"
+  done
+done
+
 # A wall with mass that falls stands still in statics, and goes on from rest.
 cat >falls.yaml <<'END'
 kinematics: plane-strain

@@ -52,7 +52,7 @@ PetscBool extension_works(const Discretisation *s)
 {
   const PetscBool implicit = s->c->analysis.type != ANALYSIS_EXPLICIT;
   const PetscBool asked = s->c->stabilisation.follow > 0 || (s->c->n_loads && loads_have_pieces(s->loads));
-  return implicit && s->grid->box && !s->nodes->pressure && asked ? PETSC_TRUE : PETSC_FALSE;
+  return implicit && s->grid->box && !s->nodes->pressure && asked && !s->alone ? PETSC_TRUE : PETSC_FALSE;
 }
 
 /* A sum over n nodes once followers are gone; PETSC_FALSE: not all nodes are known to this rank. */

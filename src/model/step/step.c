@@ -129,7 +129,7 @@ PetscErrorCode ModelInitialise(Model *m)
   if (m->method->restores_grid) PetscCall(ModelMovePlaces(m, m->time));
   PetscCall(m->method->initialise(m->space));
   m->space->present = PETSC_TRUE;
-  if (m->step > 0) PetscCall(FollowersEnd(m));
+  if (m->step > 0 && !m->space->alone) PetscCall(FollowersEnd(m));
   PetscCall(PhaseEnd(m->seconds, PHASE_INITIALISE, &clock));
   PetscFunctionReturn(0);
 }

@@ -2,6 +2,7 @@
  * those that balance the same state before and after. Newmark's first step would lack half a step of it. */
 #include "grid/cloud/cloud.h"
 #include "grid/search/directory.h"
+#include "method/extend/extend.h"
 #include "model/stage/stage_private.h"
 
 #define SAME 1e-9 /* of what acts: beyond it all is round-off, and nothing jumps */
@@ -38,6 +39,22 @@ static PetscErrorCode Forget(Model *m)
   PetscFunctionReturn(0);
 }
 
+/* Which nodes follow others is another in each stage: in explicit steps, with other loads, other nodes that are held.
+ * Of the same points all have the same mass where none does, and forces that did not change cancel. */
+static PetscErrorCode LookAlone(Model *m, PetscBool alone)
+{
+  Discretisation *s = m->space;
+
+  PetscFunctionBeginUser;
+  s->alone = PETSC_FALSE;
+  const PetscBool works = (PetscBool)(m->method->restores_grid && extension_works(s));
+  s->alone = alone;
+  if (works) s->present = PETSC_FALSE;
+  PetscCall(ModelInitialise(m));
+  if (works) mark_fixed(m);
+  PetscFunctionReturn(0);
+}
+
 /* Components of both, node by node. */
 static PetscErrorCode Find(Model *m, PetscReal *both, PetscReal *size)
 {
@@ -60,9 +77,10 @@ PetscErrorCode JumpFrom(Model *before, Tables *tables)
   PetscReal size;
 
   PetscFunctionBeginUser;
-  PetscCall(ModelInitialise(before));
+  PetscCall(LookAlone(before, PETSC_TRUE));
   PetscCall(JumpExpect(before));
   PetscCall(Find(before, before->balanced, &size));
+  PetscCall(LookAlone(before, PETSC_FALSE));
   if (before->method->clouds) PetscFunctionReturn(0); /* it follows the nodes */
   const NodalField field = field_of(before);
   PetscCall(NodesToTable(before->grid, NULL, 1, &field, "jump", tables));
@@ -163,11 +181,13 @@ PetscErrorCode JumpTo(Model *m, const Case *from, const Tables *tables, char rea
     const NodalField field = field_of(m);
     PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 1, &field, tables_find(tables, "jump"), reason));
   }
+  PetscCall(LookAlone(m, PETSC_TRUE));
   PetscCall(ComeAlong(m, from));
   PetscCall(PetscMalloc1(n, &both));
   PetscCall(Find(m, both, &size));
   for (PetscInt i = 0; i < n; ++i) both[i] -= m->balanced[i];
   if (!reason[0]) PetscCall(Jump(m, both, size));
+  PetscCall(LookAlone(m, PETSC_FALSE));
   PetscCall(PetscFree(both));
   PetscCall(Forget(m));
   PetscFunctionReturn(0);
