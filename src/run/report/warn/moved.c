@@ -15,8 +15,7 @@ static PetscBool bears_where_loaded(const Model *m)
 /* One that is loaded now. */
 static PetscBool is_surface(const LoadSpec *load)
 {
-  const PetscBool pushes = (PetscBool)(load->value[0] != 0 || load->value[1] != 0 || load->value[2] != 0);
-  return (PetscBool)(load->kind != LOAD_POINT && !load->waits && pushes);
+  return (PetscBool)(load->kind != LOAD_POINT && !load->waits && load_pushes(load));
 }
 
 /* Of the carriers of surfaces: how far the farthest has come, in cells. */
