@@ -69,6 +69,12 @@ PetscBool wall_comes(const Walls *walls, PetscInt k, PetscReal t)
          (!w->has_until || is_later(walls, w->until, now));
 }
 
+PetscBool wall_is_new(const Walls *walls, PetscInt k, PetscReal t)
+{
+  const PetscBool begins = (PetscBool)!is_later(walls, t, walls->c->start);
+  return (PetscBool)(!wall_stands(walls, k, t) || (begins && walls->c->walls[k].since == walls->c->stage));
+}
+
 PetscReal walls_until_change(const Walls *walls, PetscReal t)
 {
   PetscReal next = PETSC_MAX_REAL;

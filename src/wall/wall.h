@@ -27,6 +27,8 @@ PetscErrorCode WallsDestroy(Walls **walls);
 PetscBool wall_stands(const Walls *walls, PetscInt k, PetscReal t);
 /* And in one that begins at t? From `from` on, and before `until`. */
 PetscBool wall_comes(const Walls *walls, PetscInt k, PetscReal t);
+/* Is it new at t: by its `from`, or as what brought it begins, the run or a stage? */
+PetscBool wall_is_new(const Walls *walls, PetscInt k, PetscReal t);
 /* How long from t until a wall appears or vanishes, s; PETSC_MAX_REAL: none does. Differences that
  * wall_stands overlooks are none here either. */
 PetscReal walls_until_change(const Walls *walls, PetscReal t);

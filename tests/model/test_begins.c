@@ -1,5 +1,6 @@
 /* Sliding begins: in that step, too, a wall or another body rubs with friction times what it bears, and times the step
- * what it gives is the change of momentum, its force at the start included. */
+ * what it gives is the change of momentum, its force at the start included. What begins to push at once has the force
+ * of the wave. */
 #include "case_builder.h"
 
 #define FRICTION 0.3
@@ -179,9 +180,74 @@ static void test_table(void **state)
   }
 }
 
+/* A plate that pushes a bar with SPEED, at once or from a corner of its table on: by the midpoint rule, too, its force
+ * is that of the wave, and does not swing between twice that and nothing (docs/theory.md, "Walls"). */
+#define SPEED 0.01
+#define CORNER 0.02 /* s */
+
+typedef struct {
+  ContactKind contact;
+  PetscReal start;
+  PetscBool late; /* with a corner, else from the start of the run on */
+} Plate;
+
+static const Plate plates[] = {{CONTACT_FRICTIONLESS, 0, PETSC_FALSE},
+                               {CONTACT_FRICTIONLESS, CORNER, PETSC_TRUE},
+                               {CONTACT_STICK, CORNER, PETSC_TRUE},
+                               {CONTACT_BONDED, CORNER, PETSC_TRUE}};
+
+static Model *pushed(Bench *b, Parts *parts, const Plate *plate)
+{
+  settings(b, &(Begins){"mpm", "gimp", "midpoint", 2e-3, PETSC_FALSE});
+  bench_box(b, 0, (PetscReal[]){0, 0, 0}, (PetscReal[]){2, 0.125, 0});
+  b->constants[0].value = 1e6, b->constants[1].value = 0;
+  b->body[0].has_k0 = PETSC_FALSE;
+  b->c.gravity[1] = 0;
+  b->c.analysis.transfer = (char *)"consistent";
+  put_wall(b, parts);
+  parts->wall.contact = plate->contact;
+  parts->wall.shape.normal[0] = 1, parts->wall.shape.normal[1] = 0;
+  *parts = (Parts){.wall = parts->wall, .time = {0, CORNER, CORNER + 1}, .factor = {0, 0, 1}};
+  parts->belt = (MotionSpec){.kind = plate->late ? MOTION_DISPLACEMENT : MOTION_VELOCITY, .component = {1}};
+  parts->belt.value[0] = SPEED;
+  if (plate->late) parts->belt.amplitude = (Amplitude){.n = 3, .time = parts->time, .value = parts->factor};
+  parts->wall.n_motions = 1;
+  parts->wall.motions = &parts->belt;
+  return bench_model(b, PETSC_COMM_WORLD);
+}
+
+static void test_plate(void **state)
+{
+  (void)state;
+  EACH_OF (k, plates) {
+    const PetscReal wave = SPEED * PetscSqrtReal(1e6 * 1000) * 0.125;
+    Bench b;
+    Parts parts;
+    Energies e;
+    Model *m = pushed(&b, &parts, plates + k);
+    PetscReal given = 0, lowest = wave, highest = wave;
+    for (int step = 1; m->time < plates[k].start + 0.04; ++step) {
+      model_step(m, 2e-3);
+      const PetscReal force = model_wall(m, "floor", "wall_force", NULL, 0);
+      given += 2e-3 * force;
+      if (m->time < plates[k].start + 0.019) continue; /* the bar's front of cells has its own first steps */
+      lowest = PetscMin(lowest, force);
+      highest = PetscMax(highest, force);
+    }
+    CALL(ModelEnergies(m, &e));
+    PetscPrintf(PETSC_COMM_WORLD, "contact %d from %g s: %.4f to %.4f of %.4f N\n", (int)plates[k].contact,
+                (double)plates[k].start, (double)lowest, (double)highest, (double)wave);
+    CHECK(lowest > 0.93 * wave && highest < 1.07 * wave, "%g to %g N", (double)lowest, (double)highest);
+    CHECK_CLOSE(model_sum(m, "momentum", 0), given, 1e-9);
+    CHECK_CLOSE(e.boundary, SPEED * given, 1e-9 * given);
+    CHECK(PetscAbsReal(model_sum(m, "energy: balance", 0)) < 1e-12, "the balance is open");
+    CALL(ModelDestroy(&m));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_at_once), cmocka_unit_test(test_belt),
-                                     cmocka_unit_test(test_table)};
+                                     cmocka_unit_test(test_table), cmocka_unit_test(test_plate)};
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

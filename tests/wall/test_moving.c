@@ -177,11 +177,15 @@ static void FromUntil(void **state)
     assert_int_equal(wall_stands(after.walls, 0, t), k > 30);
     assert_int_equal(wall_comes(before.walls, 0, t), k < 30); /* steps that begin then */
     assert_int_equal(wall_comes(after.walls, 0, t), k >= 30);
+    assert_int_equal(wall_is_new(after.walls, 0, t), k <= 30);
     assert_int_equal(wall_near(before.walls, 0, t, x, 9, 0, &place), k <= 30);
     assert_int_equal(wall_near(after.walls, 0, t, x, 9, 0, &place), k >= 30);
     assert_int_equal(walls_until_change(before.walls, t) < 1, k < 30);
     if (k < 30) ASSERT_NEAR(walls_until_change(after.walls, t), 0.3 - t, 1e-14);
   }
+  assert_true(wall_is_new(before.walls, 0, 0));
+  before.c.stage = 1; /* which has not brought it */
+  assert_false(wall_is_new(before.walls, 0, 0));
   wall_close(&before);
   wall_close(&after);
 }

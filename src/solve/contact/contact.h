@@ -282,6 +282,7 @@ typedef struct {
   PetscReal rate;      /* times an increment of the step it is a mean velocity */
   PetscBool pulls;     /* may the wall pull? Else only what moves into it is stopped */
   PetscBool start;     /* of those in contact before the step, or of those in contact after it? */
+  PetscBool jumps;     /* of walls alone that go as they are told, are new, or have another velocity than before? */
 } ContactMotion;
 
 /* Collective. The least change, by mass, of nodal motion that lets points in contact go with their

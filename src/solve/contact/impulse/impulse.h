@@ -3,7 +3,9 @@
 #pragma once
 #include "solve/contact/contact.h"
 
-#define SOFTENED 0.1 /* of what an impulse moves itself: counts as motion */
+/* Of what an impulse moves itself: counts as motion. What jumps once has no later step that takes the rest. */
+#define SOFTENED 0.1
+#define SOFTENED_ONCE 0.01
 
 typedef struct {
   const Contact *s;
@@ -13,6 +15,7 @@ typedef struct {
   PetscReal *own;           /* 1 per contact point: what a unit impulse moves itself */
   unsigned char *held;      /* 0: not at all, 1: along the normal, 3: in all directions */
   PetscInt n_held, *list;   /* contact points that are held: often a third of those that are near */
+  PetscReal softened;       /* which of both */
   PetscInt rounds;          /* how often p has been sought */
   PetscReal *told;          /* 3 per contact point: velocity of a wall that goes as it is told, but for what nodes that
                              * are held let pass, m/s */

@@ -61,7 +61,7 @@ static PetscErrorCode Apply(Projection *w, const PetscReal *z, PetscReal *all, P
     impulse_gather(w, w->nodes, k, q + 3 * j);
     impulse_answer(w, w->answer, k, answer);
     for (int d = 0; d < 3; ++d) q[3 * j + d] -= answer[d];
-    for (int d = 0; d < 3; ++d) q[3 * j + d] += SOFTENED * w->own[k] * z[3 * j + d];
+    for (int d = 0; d < 3; ++d) q[3 * j + d] += w->softened * w->own[k] * z[3 * j + d];
   }
   PetscFunctionReturn(0);
 }

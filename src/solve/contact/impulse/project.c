@@ -55,6 +55,26 @@ static PetscErrorCode LetGo(Projection *w, PetscBool *any)
   PetscFunctionReturn(0);
 }
 
+/* Of the larger speed: by more a wall's velocity jumps, and not by what rounding and its two differences are off. */
+#define JUMP 1e-2
+
+/* Is the wall of contact point k, now at x, a new one, or does it go on with another velocity than it came with? */
+static PetscBool jumps(const Projection *w, PetscInt k, const PetscReal x[3])
+{
+  const ContactPoint *c = w->s->point + k;
+  PetscReal before[3], after[3], jump = 0, fastest = 0;
+  if (c->wall >= w->s->n_walls || contact_rigid(w->s, c)) return PETSC_FALSE;
+  if (wall_is_new(w->s->walls, c->wall, w->m->time)) return PETSC_TRUE;
+  wall_velocity(w->s->walls, c->wall, w->m->time, -w->m->glance, x, before);
+  wall_velocity(w->s->walls, c->wall, w->m->time, w->m->glance, x, after);
+  for (int d = 0; d < 3; ++d) {
+    jump += PetscSqr(after[d] - before[d]);
+    /* where a wall turns back it is its way in the step that tells what is slow */
+    fastest += PetscSqr(after[d]) + PetscSqr(before[d]) + PetscSqr(w->m->rate * c->swept[d]);
+  }
+  return (PetscBool)(jump > PetscSqr(JUMP) * fastest);
+}
+
 /* What has just met a wall that lets nothing slide does not slide there either. */
 static unsigned char held_of(const ContactPoint *c, const ContactMotion *m)
 {
@@ -213,7 +233,7 @@ static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projectio
   PetscBool here = PETSC_FALSE;
 
   PetscFunctionBeginUser;
-  *w = (Projection){.s = s, .m = m};
+  *w = (Projection){.s = s, .m = m, .softened = m->jumps ? SOFTENED_ONCE : SOFTENED};
   PetscCall(PetscCalloc6(3 * s->n, &w->p, 3 * s->n, &w->lack, 3 * s->n, &w->told, s->n, &w->own, s->n, &w->held, s->n,
                          &w->list));
   PetscCall(
@@ -226,7 +246,7 @@ static PetscErrorCode Create(const Contact *s, const ContactMotion *m, Projectio
     if (b) rigid_arm(b, m->start, x, w->arm + 3 * k);
     else take_told(w, k, x, w->told + 3 * k);
     if (b) w->own[k] += 1 / b->body.mass;
-    w->held[k] = held_of(c, m);
+    w->held[k] = !m->jumps || jumps(w, k, x) ? held_of(c, m) : 0;
     lack_of(w, k, w->lack + 3 * k);
     here = here || w->held[k];
     for (PetscInt e = c->first; e < c->first + c->n; ++e)

@@ -56,7 +56,7 @@ static PetscErrorCode FindDiagonal(Whole *x)
   PetscCall(PetscArrayzero(x->inverse, x->dofs));
   for (PetscInt k = 0; k < s->n && x->coupled; ++k) {
     const ContactPoint *c = s->point + k;
-    const PetscReal hard = x->w->held[k] ? 1 / (SOFTENED * x->w->own[k]) : 0;
+    const PetscReal hard = x->w->held[k] ? 1 / (x->w->softened * x->w->own[k]) : 0;
     for (PetscInt e = c->first; e < c->first + c->n; ++e)
       for (PetscInt d = 0; d < dim; ++d)
         x->inverse[s->node[e] * dim + d] +=
@@ -82,7 +82,7 @@ static void impulses_of(const Whole *x, PetscReal of, const PetscReal *nodes, co
     impulse_hold(w, k, lack);
     impulse_gather(w, nodes, k, moves);
     impulse_answer(w, walls, k, answer);
-    for (int d = 0; d < 3; ++d) z[3 * k + d] = (lack[d] - moves[d] + answer[d]) / (SOFTENED * w->own[k]);
+    for (int d = 0; d < 3; ++d) z[3 * k + d] = (lack[d] - moves[d] + answer[d]) / (w->softened * w->own[k]);
   }
 }
 
