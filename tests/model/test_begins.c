@@ -1,6 +1,6 @@
 /* Sliding begins: in that step, too, a wall or another body rubs with friction times what it bears, and times the step
  * what it gives is the change of momentum, its force at the start included. What begins to push at once has the force
- * of the wave. */
+ * of the wave, and what begins to be accelerated that of its mass. */
 #include "case_builder.h"
 
 #define FRICTION 0.3
@@ -245,9 +245,43 @@ static void test_plate(void **state)
   }
 }
 
+/* Explicitly, too, what a boundary accelerates has its velocity at the end of a step, and takes the force that a weight
+ * takes that is as large. */
+static PetscReal held_up(PetscReal moves)
+{
+  const MeasureSpec reaction = {.kind = "reaction", .component = 1};
+  const PetscReal pull = 5;
+  PetscReal force = 0;
+  Bench b;
+  settings(&b, &(Begins){"mpm", "gimp", NULL, 2e-3, PETSC_FALSE});
+  Parts parts = {.time = {0, 1}, .factor = {0, 1}};
+  b.c.analysis.type = ANALYSIS_EXPLICIT;
+  b.c.analysis.end = 2e-3;
+  b.constants[0].value = 1e6, b.constants[1].value = 0;
+  b.body[0].has_k0 = PETSC_FALSE;
+  b.c.gravity[1] = (moves - 1) * pull;
+  MotionSpec *motion = bench_motion(&b, 1, 0, MOTION_VELOCITY, 3);
+  motion->value[1] = moves * pull;
+  motion->amplitude = (Amplitude){.n = 2, .time = parts.time, .value = parts.factor};
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  model_step(m, 2e-3);
+  CALL(ModelMeasure(m, &reaction, 0, &force));
+  CALL(ModelDestroy(&m));
+  return force;
+}
+
+static void test_explicit_boundary(void **state)
+{
+  (void)state;
+  const PetscReal moved = held_up(1), weighs = held_up(0);
+  PetscPrintf(PETSC_COMM_WORLD, "explicit: %.4f N accelerate, %.4f N bear\n", (double)moved, (double)weighs);
+  CHECK_CLOSE(moved, weighs, 1e-3 * weighs);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_at_once), cmocka_unit_test(test_belt),
-                                     cmocka_unit_test(test_table), cmocka_unit_test(test_plate)};
+                                     cmocka_unit_test(test_table), cmocka_unit_test(test_plate),
+                                     cmocka_unit_test(test_explicit_boundary)};
   return run_model_group(argc, argv, tests, PETSC_STATIC_ARRAY_LENGTH(tests));
 }

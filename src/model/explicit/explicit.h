@@ -25,6 +25,7 @@ typedef struct {
 typedef struct {
   PetscInt node, axis;
   PetscReal velocity; /* of the substep, m/s */
+  PetscReal glanced;  /* of a part of it */
 } Held;
 
 /* Points that walls may meet in the lap, where points find their nodes by arithmetic, and the nodes that these see in

@@ -140,6 +140,19 @@ static void prescribe(Model *m, Explicit *e, PetscReal dt)
     e->held[k].velocity = increment[e->held[k].node * m->dim + e->held[k].axis] / dt;
 }
 
+/* Of the substep: by its last part nodes tell how fast they go at its end, whatever corner lies before that. */
+#define GLANCE 0.0625
+
+/* Velocities of what is prescribed at this instant, which ends a substep. */
+static void prescribe_now(Model *m, Explicit *e)
+{
+  prescribe(m, e, -GLANCE * e->before);
+  for (Held *h = e->held; h < e->held + e->n_held; ++h) h->glanced = h->velocity;
+  prescribe(m, e, -0.5 * GLANCE * e->before);
+  if (!e->moved && !m->boundary->field) return;
+  for (Held *h = e->held; h < e->held + e->n_held; ++h) h->velocity = 2 * h->velocity - h->glanced;
+}
+
 /* The component of v in the frame of the node becomes what is prescribed; returns by how much. */
 static PetscReal hold(const Model *m, const Held *h, PetscReal *v, PetscReal change[3])
 {
@@ -200,7 +213,8 @@ PetscErrorCode NodesMove(Model *m, Explicit *e)
 void nodes_hold(Model *m, Explicit *e)
 {
   const PetscInt dim = m->dim;
-  prescribe(m, e, e->dt > 0 ? e->dt : -e->before); /* where points do not move: of the last substep */
+  if (e->dt > 0) prescribe(m, e, e->dt);
+  else prescribe_now(m, e); /* points do not move: velocities become those of the step's end */
   for (const Held *h = e->held; h < e->held + e->n_held; ++h) {
     PetscReal *v = e->motion + h->node * 2 * dim, change[3];
     const PetscReal mass = e->sum[h->node * e->width] * e->kick / e->act; /* for the force that it takes */
