@@ -122,4 +122,25 @@ for law in "contact: frictionless" "friction: 0.5" "contact: bonded"; do
       END { exit !(n == 400 && first > 4e-4 && last > 0.99 * first && last < 1.01 * first) }' swings/history.csv || fail "$name"
   done
 done
+
+# A block that rests by friction on a soft ramp of 30 degrees, mu 0.8, is not shaken by what is asked of gaps until it slides
+cat >rests.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+basis: {cell: {}}
+analysis: {type: dynamic, end: 1.2, step: 2.5e-3}
+grid: {box: {min: [0, 0], max: [3, 1.5]}, size: 0.25}
+bodies:
+  - {name: block, shape: {box: {min: [0.75, 0.5], max: [1.75, 1]}}, points_per_cell: 4, material: hard}
+  - {name: ramp, shape: {box: {min: [0, 0], max: [3, 0.5]}}, points_per_cell: 4, material: soft}
+materials:
+  hard: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0.3}
+  soft: {law: neo-hookean, density: 1000, young: 3e7, poisson: 0.3}
+walls: [{name: base, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, contact: bonded, bodies: [ramp]}]
+interfaces: [{name: joint, between: [block, ramp], contact: friction, friction: 0.8}]
+loads: {gravity: [4.905, -8.495709], gravity_amplitude: [[0, 0], [0.4, 1]]}
+measures: {way: {displacement: x, of: {tracer: [1.25, 0.95]}, rate: {window: 0.6}}}
+END
+expect "rests on a soft ramp" 0 "$talus" run rests.yaml --out rests --force --quiet
+awk -F, 'END { exit !($3 * $3 < 1e-12) }' rests/history.csv || fail "$name: $(tail -n 1 rests/history.csv)"
 finish

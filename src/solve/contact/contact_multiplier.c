@@ -322,9 +322,14 @@ enum {
   OF_SWING,       /* swing_of, m */
   WAS_IN_CONTACT, /* was any before the step? */
   RUBS_NOW,       /* does any rub, */
-  SLIDES_NOW,     /* and slide? */
+  SLIDES_NOW,     /* and slide, or is it two bodies? */
   OF_ALL
 };
+
+static PetscBool may_slide(const Contact *s, const ContactPoint *c)
+{
+  return (PetscBool)(c->state == CONTACT_SLIDES || c->wall >= s->n_walls);
+}
 
 static PetscErrorCode LookAt(const Contact *s, const NodalScene *scene, PetscInt change, PetscReal most[OF_ALL])
 {
@@ -344,7 +349,7 @@ static PetscErrorCode LookAt(const Contact *s, const NodalScene *scene, PetscInt
     w[OF_PRESSED] = PetscMax(w[OF_PRESSED], PetscAbsReal(c->now.pressure) / c->law.penalty);
     w[WAS_IN_CONTACT] = PetscMax(w[WAS_IN_CONTACT], c->before != CONTACT_OPEN);
     w[RUBS_NOW] = PetscMax(w[RUBS_NOW], rubs && c->state != CONTACT_OPEN);
-    w[SLIDES_NOW] = PetscMax(w[SLIDES_NOW], rubs && c->state == CONTACT_SLIDES);
+    w[SLIDES_NOW] = PetscMax(w[SLIDES_NOW], rubs && may_slide(s, c));
   }
   w[OF_SWING] = swing_of(s, scene);
   PetscCall(MPIU_Allreduce(w, most, OF_ALL, MPIU_REAL, MPIU_MAX, scene->grid->comm));
@@ -353,7 +358,7 @@ static PetscErrorCode LookAt(const Contact *s, const NodalScene *scene, PetscInt
 
 /* What may stay of gaps, or of slips, which `times` as much may. A gap that is taken away while the pressure is high,
  * and let be while it is low, gives energy to what swings on a wall: where nothing slides it is a share of what swings.
- * What rests would be shaken by that. */
+ * What rests would be shaken by that, and between bodies that rub on each other what rests slides here or there. */
 static PetscReal allowed(const Contact *s, PetscInt change, const PetscReal most[OF_ALL], PetscReal times)
 {
   const PetscReal closed = closed_by(s, change, most[OF_PRESSED]), asked = s->share.asked;
