@@ -25,7 +25,7 @@ typedef struct Discretisation {
   PetscReal *volume;               /* n_cells, of grids that are restored: 0 where nobody has asked for it, m3 */
   PetscReal *whole;                /* n_nodes, of such a grid: the node's share of the cells, m3; NULL: not asked for */
   struct Extension *extension;     /* which nodes follow others, of points with domains; see extend/extend.h */
-  PetscBool alone;                 /* does no node follow for now, whatever the case says? */
+  PetscBool alone;                 /* does no node follow, while accelerations are taken over? */
   unsigned char *rim;              /* BasisInput.rim of the last support, of a basis that asks; else NULL */
   unsigned char *reached;          /* n_nodes: touched, or follows; NULL: none follows */
   /* of a point's velocity beyond the nodes': what damping takes in the step */

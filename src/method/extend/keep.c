@@ -55,8 +55,8 @@ static PetscErrorCode FindExtents(const Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-/* Would all nodes of point p be known to this rank and stand as near together as the system's pattern has them, if there
- * were no followers, or only this one and the others were not there? */
+/* Would all nodes of point p be known to this rank and stand as near together as the system's pattern has them, if
+ * there were no followers, or only this one and the others were not there? */
 static PetscBool sees_near(const Discretisation *s, const Seen *seen, PetscInt p, PetscInt only)
 {
   const Extension *e = s->extension;

@@ -326,6 +326,7 @@ enum {
   OF_ALL
 };
 
+/* Of what rubs: it slides, or rests on another body, where parts of it slide now and then. */
 static PetscBool may_slide(const Contact *s, const ContactPoint *c)
 {
   return (PetscBool)(c->state == CONTACT_SLIDES || c->wall >= s->n_walls);
