@@ -3,7 +3,10 @@
 #pragma once
 #include "case/case.h"
 
-/* Increment over [t0, t1], in component d, of a node that stands at x (dim), m. */
+/* Increment over [t0, t1] of a node that stands at x (dim), m. */
+void motion_increments(const Case *c, const MotionSpec *m, const PetscReal *x, PetscReal t0, PetscReal t1,
+                       PetscReal increment[3]);
+/* In component d. */
 PetscReal motion_increment(const Case *c, const MotionSpec *m, const PetscReal *x, PetscInt d, PetscReal t0,
                            PetscReal t1);
 /* Of a rotation at time t: what has been turned since its start, rad. */

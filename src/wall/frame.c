@@ -30,9 +30,12 @@ void frame_at(const Case *c, const WallSpec *wall, PetscReal t, Frame *frame)
   *frame = (Frame){.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   for (PetscInt k = 0; k < wall->n_motions; ++k) {
     const MotionSpec *m = wall->motions + k;
+    PetscReal moved[3];
     if (m->kind == MOTION_ROTATION) turn(m, motion_angle(c, m, t), frame);
-    else
-      for (PetscInt d = 0; d < 3; ++d) frame->T[d] += motion_increment(c, m, frame->T, d, m->amplitude.origin, t);
+    else {
+      motion_increments(c, m, frame->T, m->amplitude.origin, t, moved);
+      for (PetscInt d = 0; d < 3; ++d) frame->T[d] += moved[d];
+    }
   }
 }
 
@@ -55,31 +58,35 @@ void frame_turn_tensor(const Frame *frame, const PetscReal A[9], PetscReal a[9])
   for (int i = 0; i < 3; ++i) frame_turn(frame, RA + 3 * i, a + 3 * i);
 }
 
-/* Motion k takes y[k] to y[k + 1]. With another increment before it, d, its own is R d and what it
- * adds at y[k + 1]: d' = R d + m(y[k + 1]). */
-static void add_motion(const Case *c, const MotionSpec *m, PetscReal t0, PetscReal t1, const PetscReal x[3],
-                       PetscReal increment[3])
+/* Motion m turns the increment of those before it. */
+static void carry(const Case *c, const MotionSpec *m, PetscReal t1, PetscReal increment[3])
 {
+  const PetscReal before[3] = {increment[0], increment[1], increment[2]};
   Frame step = {.R = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
-  PetscReal before[3] = {increment[0], increment[1], increment[2]};
-  if (m->kind == MOTION_ROTATION) turn(m, motion_angle(c, m, t1), &step);
+  if (m->kind != MOTION_ROTATION) return;
+  turn(m, motion_angle(c, m, t1), &step);
   frame_turn(&step, before, increment);
-  for (PetscInt d = 0; d < 3; ++d) increment[d] += motion_increment(c, m, x, d, t0, t1);
 }
 
-/* Follow x back to where it was before motion n - 1 and all earlier ones, then add increments on
- * the way forth. */
+/* Motion k takes y[k] to y[k + 1]. With another increment before it, d, its own is R d and what it
+ * adds at y[k + 1]: d' = R d + m(y[k + 1]). Follow x back to where it was before motion n - 1 and all
+ * earlier ones, then add increments on the way forth. */
 static void increment_of(const Case *c, const WallSpec *wall, PetscInt n, PetscReal t0, PetscReal t1,
                          const PetscReal x[3], PetscReal increment[3])
 {
   const PetscInt dim = kinematics_dim(c->kinematics);
-  PetscReal before[3] = {0, 0, 0};
+  PetscReal before[3] = {0, 0, 0}, own[3];
   for (int d = 0; d < 3; ++d) increment[d] = 0;
   if (!n) return;
-  motion_origin(c, wall->motions + n - 1, x, t0, before);
-  for (PetscInt d = dim; d < 3; ++d) before[d] = x[d];
-  increment_of(c, wall, n - 1, t0, t1, before, increment);
-  add_motion(c, wall->motions + n - 1, t0, t1, x, increment);
+  const MotionSpec *last = wall->motions + n - 1;
+  if (n > 1) { /* else nothing stood elsewhere before it */
+    motion_origin(c, last, x, t0, before);
+    for (PetscInt d = dim; d < 3; ++d) before[d] = x[d];
+    increment_of(c, wall, n - 1, t0, t1, before, increment);
+    carry(c, last, t1, increment);
+  }
+  motion_increments(c, last, x, t0, t1, own);
+  for (int d = 0; d < 3; ++d) increment[d] += own[d];
 }
 
 void frame_increment(const Case *c, const WallSpec *wall, PetscReal t0, PetscReal t1, const PetscReal x[3],

@@ -75,6 +75,13 @@ static void stay_open(ContactPoint *c)
   c->gap = PETSC_MAX_REAL;
 }
 
+/* Most that is near a wall has not met it, before the step or in it: nothing asks which way it would push. */
+static PetscBool stays_away(const ContactPoint *c)
+{
+  if (c->before != CONTACT_OPEN || !contact_opens(&c->law, c->gap, &c->multiplier)) return PETSC_FALSE;
+  return (PetscBool)(c->lent[0] == 0 && c->lent[1] == 0 && c->lent[2] == 0);
+}
+
 PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *scene, ContactTangent *tangent)
 {
   const RigidWall *rigid = contact_rigid(s, c);
@@ -89,15 +96,16 @@ PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *sce
   c->ahead = c->reach;
   if (rigid) c->passed = contact_let_pass(c, c->swept, c->let); /* of others it is known */
   if (!place_of(s, c, scene->end, x, way, &place)) return PETSC_FALSE;
-  pushes = c->halfway ? contact_halfway(&place, c->facing, c->open - c->behind) : contact_straight(&place);
-  pushes.at.gap += c->passed;
-  pushes.at.gap += s->share.leaves * PetscMax(0, -(c->open + c->passed));
+  c->gap = place.gap + c->passed + s->share.leaves * PetscMax(0, -(c->open + c->passed));
   for (int d = 0; d < 3; ++d) {
     c->slip[d] = way[d] - c->swept[d] + c->let[d];
-    c->normal[d] = place.normal[d], c->push[d] = pushes.push[d];
+    c->normal[d] = c->push[d] = place.normal[d];
   }
-  c->gap = pushes.at.gap;
   c->law.grips = (PetscBool)(s->grips && contact_touched(c));
+  if (stays_away(c)) return PETSC_FALSE;
+  pushes = c->halfway ? contact_halfway(&place, c->facing, c->open - c->behind) : contact_straight(&place);
+  pushes.at.gap = c->gap;
+  for (int d = 0; d < 3; ++d) c->push[d] = pushes.push[d];
   c->state = contact_law(&c->law, &pushes, c->slip, &c->multiplier, &c->now, tangent);
   return c->state != CONTACT_OPEN;
 }

@@ -156,11 +156,17 @@ static ContactState rub(const ContactLaw *law, const ContactPlace *place, const 
   return CONTACT_SLIDES;
 }
 
+PetscBool contact_opens(const ContactLaw *law, PetscReal gap, const ContactForce *multiplier)
+{
+  const PetscBool pulls = (PetscBool)(law->kind == CONTACT_BONDED || law->grips);
+  return (PetscBool)(!pulls && multiplier->pressure - law->penalty * gap <= 0);
+}
+
 ContactState contact_law(const ContactLaw *law, const ContactPlace *place, const PetscReal slip[3],
                          const ContactForce *multiplier, ContactForce *now, ContactTangent *tangent)
 {
   *now = (ContactForce){.pressure = multiplier->pressure - law->penalty * place->at.gap};
-  if (now->pressure <= 0 && law->kind != CONTACT_BONDED && !law->grips) {
+  if (contact_opens(law, place->at.gap, multiplier)) {
     now->pressure = 0;
     if (tangent) *tangent = (ContactTangent){.K = {0}};
     return CONTACT_OPEN;

@@ -57,6 +57,8 @@ ContactPlace contact_straight(const WallPlace *place);
  * round wall would be braked (docs/theory.md, section 84). */
 ContactPlace contact_halfway(const WallPlace *place, const PetscReal start[3], PetscReal open);
 
+/* Has it nothing to push with at that gap, m, and does not pull? */
+PetscBool contact_opens(const ContactLaw *law, PetscReal gap, const ContactForce *multiplier);
 /* `now`, from the multipliers and where the point is against the wall. tangent: NULL: not wanted. */
 ContactState contact_law(const ContactLaw *law, const ContactPlace *place, const PetscReal slip[3],
                          const ContactForce *multiplier, ContactForce *now, ContactTangent *tangent);
