@@ -163,6 +163,19 @@ int wall_side(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x)
   return near == NEAR_RIM ? 0 : place.gap < 0 ? -1 : 1;
 }
 
+PetscBool wall_has_one_side(const Walls *walls, PetscInt k)
+{
+  const WallSpec *spec = walls->wall[k].spec;
+  switch (spec->shape.kind) {
+  case SHAPE_HALF_SPACE: return PETSC_TRUE;
+  case SHAPE_BOX:
+  case SHAPE_BALL:
+  case SHAPE_CYLINDER:
+  case SHAPE_CONE: return spec->inside;
+  default: return PETSC_FALSE;
+  }
+}
+
 void wall_motion(const Walls *walls, PetscInt k, PetscReal t0, PetscReal t1, const PetscReal *x, PetscReal increment[3])
 {
   const PetscReal at[3] = {x[0], x[1], walls->dim == 3 ? x[2] : 0};

@@ -64,6 +64,8 @@ void wall_from_anchor(const Walls *walls, PetscInt k, PetscReal t, const PetscRe
 /* On which side of wall k is x at time t, 1 or -1? 0 for walls that have an inside, and beyond the
  * rim of others, where neither side is behind the other: ask anew in every step. */
 int wall_side(const Walls *walls, PetscInt k, PetscReal t, const PetscReal *x);
+/* Is no place of it ever behind another one: a half-space, and what surrounds a hollow that bulges everywhere? */
+PetscBool wall_has_one_side(const Walls *walls, PetscInt k);
 /* What the wall's matter that is at x at t0 moves by until t1, m. */
 void wall_motion(const Walls *walls, PetscInt k, PetscReal t0, PetscReal t1, const PetscReal *x,
                  PetscReal increment[3]);

@@ -183,9 +183,11 @@ static PetscErrorCode LookAtWall(Model *m, PetscInt k, PetscReal reach, Face *fa
   PetscFunctionReturn(0);
 }
 
+/* Is it asked of wall k, and not known yet? */
 static PetscBool is_open(const Model *m, PetscInt k)
 {
-  return (PetscBool)(!m->astride[k].nodes && m->c->walls[k].contact != CONTACT_BONDED);
+  if (m->astride[k].nodes || m->c->walls[k].contact == CONTACT_BONDED) return PETSC_FALSE;
+  return (PetscBool)!wall_has_one_side(m->walls, k);
 }
 
 PetscErrorCode AstrideLook(Model *m)
