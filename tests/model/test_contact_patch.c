@@ -142,8 +142,33 @@ static void test_sheared(void **state)
   }
 }
 
+/* In space each point is known to up to 64 nodes, and contact looks at all of them. */
+static void test_stands(void **state)
+{
+  static const char *const bases[] = {"gimp", "bspline"};
+  (void)state;
+  EACH_OF (k, bases) {
+    const Patch patch = {bases[k], bases[k], &kinematics_3d, 0.03, 3, 0, 0};
+    MotionSpec down = {.kind = MOTION_FIXED};
+    InterfaceSpec joint;
+    WallSpec walls[2];
+    Bench b;
+    set_up(&b, &patch, walls, &down, &joint);
+    b.c.n_walls = 1;
+    b.c.gravity[1] = -10;
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    while (m->time < 1 - 1e-9) model_step(m, 1 - m->time);
+    const PetscReal weight = 10 * b.material.density * 0.4 * 0.5 * 0.3,
+                    borne = model_wall(m, "floor", "wall_force", NULL, 1);
+    CHECK_CLOSE(borne, weight, 1e-8 * weight);
+    CALL(ModelDestroy(&m));
+    bench_end(&b);
+  }
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_uniform), cmocka_unit_test(test_sheared)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_uniform), cmocka_unit_test(test_sheared),
+                                     cmocka_unit_test(test_stands)};
   return run_model_tests(argc, argv, tests);
 }

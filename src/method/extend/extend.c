@@ -191,7 +191,7 @@ PetscBool extension_bends(const void *space, PetscInt p, PetscInt n, PetscReal *
   if (!s->basis->bends || !s->grid->box || s->points->cell[p] < 0) return PETSC_FALSE;
   const PetscInt seen = s->basis->bends(&in, s->points, p, node, raw);
   if (!s->extension->any) {
-    for (PetscInt k = 0; k < n * s->grid->dim; ++k) bend[k] = raw[k];
+    for (PetscInt k = 0; k < n * s->grid->dim && seen == n; ++k) bend[k] = raw[k];
     return (PetscBool)(seen == n);
   }
   if (!sum_row(s, s->grid->dim, seen, node, none, raw, &row) || row.n != n) return PETSC_FALSE;

@@ -2,7 +2,6 @@
 #include "material/law.h"
 #include "solve/contact/contact.h"
 
-#define BENDING 27     /* most nodes of a point whose functions bend */
 #define TOUCHES 1e-6   /* of a cell: within this what had no force at the start of the step touches */
 #define STIFF 0.02     /* strain up to which what may yield moves as a body */
 #define EDGE 1e-6      /* of its curvature that an edge may lack */
@@ -254,7 +253,7 @@ static void take_lead(const NodalScene *scene, PetscInt p, PetscInt nn, const Pe
                       PetscReal reach, PetscBool let_in, PetscReal *lead)
 {
   const PetscInt dim = scene->grid->dim;
-  PetscReal bend[3 * BENDING];
+  PetscReal bend[3 * CLOUD_MAX_NODES];
   const PetscBool bends = !let_in && scene->bends && scene->bends(scene->bends_context, p, nn, bend);
   for (PetscInt I = 0; I < nn; ++I) {
     lead[I] = 0;
