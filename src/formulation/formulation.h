@@ -19,6 +19,7 @@ typedef struct {
   const PetscReal *du;      /* n_nodes x dim: displacement since the start of the step, m */
   const PetscReal *history; /* n_nodes x dim: h, m/s2 */
   PetscReal inertia;        /* c0, 1/s2; 0 in statics */
+  PetscBool middle;         /* are du those of half a step whose forces balance there? */
   PetscBool symmetric;      /* are the tangents of all materials symmetric? */
   const PetscReal *lumping; /* per group: share of the mass that is lumped, or NULL (0) */
   /* per group: stiffness that ties a hardly filled cell's nodes together, N/m, or NULL; where each point

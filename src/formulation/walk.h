@@ -11,6 +11,7 @@ typedef struct {
   PetscInt group;         /* of the first */
   PetscBool keeps_state;  /* will the new state be asked for? */
   PetscReal dF[9 * LAW_BATCH], p[LAW_BATCH];
+  PetscReal arc[9 * LAW_BATCH]; /* what the law gets of dF in the middle of a step */
   PetscReal old[LAW_MAX_STATE * LAW_BATCH], state[LAW_MAX_STATE * LAW_BATCH];
   PressureStress s; /* without an unknown pressure tau and c alone */
 } Batch;
@@ -61,6 +62,30 @@ static inline PetscBool batch_crosses_axis(const WeakFormInput *in, const Batch 
   return PETSC_FALSE;
 }
 
+/* What a rotation makes of the middle of a chord, cos(theta / 2) R(theta / 2), back to the middle of the arc. With w,
+ * the axial vector of the increment's spin at the middle, |w| = tan(theta / 2), it is (1 + w.w - w w^T)^(1/2) dF: what
+ * stretches without a turn stays (docs/theory.md, "The midpoint rule"). */
+static inline void chord_to_arc(const PetscReal dF[9], PetscReal arc[9])
+{
+  PetscReal inverse[9];
+  tensor_inverse(dF, inverse);
+  const PetscReal w[3] = {0.5 * (inverse[5] - inverse[7]), 0.5 * (inverse[6] - inverse[2]),
+                          0.5 * (inverse[1] - inverse[3])};
+  const PetscReal square = w[0] * w[0] + w[1] * w[1] + w[2] * w[2], more = 1 / (1 + PetscSqrtReal(1 + square));
+  for (int j = 0; j < 3; ++j) {
+    const PetscReal along = w[0] * dF[j] + w[1] * dF[3 + j] + w[2] * dF[6 + j];
+    for (int i = 0; i < 3; ++i) arc[3 * i + j] = dF[3 * i + j] + more * (square * dF[3 * i + j] - along * w[i]);
+  }
+}
+
+/* What the law gets of the increments b->dF. */
+static inline const PetscReal *batch_strains(const WeakFormInput *in, Batch *b)
+{
+  if (!in->middle) return b->dF;
+  for (PetscInt k = 0; k < b->n; ++k) chord_to_arc(b->dF + 9 * k, b->arc + 9 * k);
+  return b->arc;
+}
+
 /* Call the law on the increments b->dF. */
 static inline LawStatus batch_law(const WeakFormInput *in, PetscBool tangent, Batch *b)
 {
@@ -68,7 +93,8 @@ static inline LawStatus batch_law(const WeakFormInput *in, PetscBool tangent, Ba
   const Material *material = batch_material(in, b);
   const LawUpdate update = law_update_in(material->law, in->kinematics);
   PetscReal *state = b->keeps_state || !material->law->spares_state ? b->state : NULL;
-  return update(material->parameters, b->n, b->dF, batch_old(in, b), state, b->s.tau, tangent ? b->s.c : NULL);
+  return update(material->parameters, b->n, batch_strains(in, b), batch_old(in, b), state, b->s.tau,
+                tangent ? b->s.c : NULL);
 }
 
 /* The same with the pressures b->p. */

@@ -235,10 +235,52 @@ static void test_rows(void **state)
   }
 }
 
+/* What turns freely is pulled by its own inertia alone, and the mean of that is known whatever its shape:
+ * int tr sigma dV = int rho w^2 r^2 dV, twice its kinetic energy, however stiff it is beside what it turns by in a
+ * step. */
+static void test_spun(void **state)
+{
+  static const Kinematics *const kinds[] = {&kinematics_plane_strain, &kinematics_3d};
+  const PetscReal half[2] = {-0.3, 0.3}, turn = 0.05; /* rad */
+  (void)state;
+  EACH_OF (k, kinds) {
+    const PetscInt dim = kinds[k]->dim, steps = 20;
+    PetscReal mean = 0, kinetic = 0;
+    Bench b;
+    bench_init(&b, "mpm", dim == 3 ? CELL_HEXAHEDRON : CELL_QUADRILATERAL, 0);
+    b.c.kinematics = kinds[k];
+    b.constants[0].value = 1e9, b.constants[1].value = 0.3;
+    bench_grid(&b, (PetscReal[]){-0.6, -0.6, -0.6}, (PetscReal[]){0.6, 0.6, 0.6}, dim == 3 ? 0.2 : 0.1);
+    bench_box(&b, 0, (PetscReal[]){half[0], half[0], half[0]}, (PetscReal[]){half[1], half[1], half[1]});
+    b.body[0].spin[2] = dim == 3 ? 0.48 : 1;
+    if (dim == 3) b.body[0].spin[0] = 0.6, b.body[0].spin[1] = 0.64;
+    bench_dynamic(&b, (PetscReal)steps * turn, turn);
+    b.c.basis.kind = "gimp", b.c.analysis.transfer = (char *)"consistent", b.c.analysis.scheme = (char *)"midpoint";
+    Model *m = bench_model(&b, PETSC_COMM_WORLD);
+    for (PetscInt step = 0; step < steps; ++step) {
+      PetscReal pull = 0, twice = 0;
+      model_step(m, turn);
+      for (PetscInt p = 0; p < m->points->n; ++p) {
+        const PetscReal *tau = point_real(m->points, POINT_TAU, p), *v = point_real(m->points, POINT_V, p);
+        for (PetscInt d = 0; d < dim; ++d) {
+          pull += m->points->real[POINT_VOLUME][p] * tau[d];
+          twice += m->points->real[POINT_MASS][p] * v[d] * v[d];
+        }
+      }
+      mean += sum_over(m, pull) / (PetscReal)steps;
+      kinetic += sum_over(m, twice) / (PetscReal)steps;
+    }
+    PetscPrintf(PETSC_COMM_WORLD, "%dD: %.6g J pull for %.6g\n", (int)dim, (double)mean, (double)kinetic);
+    CHECK_CLOSE(mean, kinetic, 0.02 * kinetic);
+    CALL(ModelDestroy(&m));
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_linear),  cmocka_unit_test(test_yields),
                                      cmocka_unit_test(test_unseen),  cmocka_unit_test(test_momentum),
-                                     cmocka_unit_test(test_refused), cmocka_unit_test(test_rows)};
+                                     cmocka_unit_test(test_refused), cmocka_unit_test(test_rows),
+                                     cmocka_unit_test(test_spun)};
   return run_model_tests(argc, argv, tests);
 }

@@ -287,6 +287,7 @@ PetscErrorCode PrepareStep(Model *m, PetscReal dt, StepProblem *p)
     .weaker = m->strength.trying,
     .wide = m->space->basis->nodes != BASIS_OF_CELLS,
   };
+  p->in.middle = m->scheme->middle;
   p->in.pull = m->pull;
   p->in.half = m->symmetric && !m->space->support->n_runs;
   p->round_off = round_off_of(m, inertia);
