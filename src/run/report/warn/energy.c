@@ -128,8 +128,11 @@ static PetscBool hint_of_scheme(const Model *m, PetscReal share, Diag *diag)
 }
 
 /* Within a step a body is flat to another one (docs/theory.md, section 84). */
-static const char *contact_takes(const Model *m)
+static const char *contact_takes(const Model *m, PetscReal share)
 {
+  if (m->c->analysis.type == ANALYSIS_EXPLICIT && share < 0)
+    return "what substeps make where points hardly reach a node, shorter ones lessen: `analysis: {courant: 0.4}`, or "
+           "`basis: gimp`; measure {energy: transfer} shows when (docs/theory.md, sections 34 and 73)";
   if (m->c->analysis.type == ANALYSIS_EXPLICIT)
     return "springs of what touches store a part of it, and their dashpots take what swings until it rests; "
            "smaller cells lessen it; measure {energy: transfer} shows when (docs/theory.md, section 34)";
@@ -142,10 +145,10 @@ static const char *contact_takes(const Model *m)
 }
 
 /* PETSC_FALSE: none. */
-static PetscBool hint_of_contact(const Model *m, Diag *diag)
+static PetscBool hint_of_contact(const Model *m, PetscReal share, Diag *diag)
 {
   if (!m->contact || (m->c->analysis.type != ANALYSIS_EXPLICIT && m->method->restores_grid)) return PETSC_FALSE;
-  diag_hint(diag, "%s", contact_takes(m));
+  diag_hint(diag, "%s", contact_takes(m, share));
   return PETSC_TRUE;
 }
 
@@ -179,7 +182,7 @@ static void warn_of_transfer(const Model *m, Diag *diag)
     (double)m->most_energy);
   if (m->method->clouds && share < 0) hint_of_clouds(m, diag);
   else if (!m->method->restores_grid && acts_at_once(m) && share > 0) hint_of_statics_at_once(m, diag);
-  else if (!hint_of_scheme(m, share, diag) && !hint_of_contact(m, diag)) hint_of_grid(m, diag);
+  else if (!hint_of_scheme(m, share, diag) && !hint_of_contact(m, share, diag)) hint_of_grid(m, diag);
 }
 
 /* Elastic bodies give all back; those that have snapped through to another shape do not, and are few. */
