@@ -18,6 +18,7 @@
 /* (omega dt)^2 of springs alone on the nodes: 4 is unstable, of which waves have up to 4 C^2, C the Courant number; of
  * what that leaves (docs/theory.md, section 73). A full cell beside a wall has C^2 times the stiffness of contact. */
 #define MOST 3.61
+#define SOFTEST 2 /* by how much nodes of little mass soften a spring at most */
 
 static PetscReal *kept_of(const Model *m, const ContactPoint *c) { return contact_kept_of(m->contact, m->points, c); }
 
@@ -84,32 +85,67 @@ static void push(const Model *m, const Explicit *e, ContactPoint *c)
   c->state = contact_law(&c->law, &place, nowhere, &before, &c->now, NULL);
 }
 
-/* A node that points hardly reach has less mass than functions at the surface give it of the springs' stiffness: where
- * grains flow, and single ones come there, these are as stiff as the substep bears, by row sums of N M^-1 N^T k. */
-static PetscErrorCode Limit(const Model *m, const Explicit *e)
+/* Stiffness and mass of the nodes: of each spring as much as any place between point and surface gives it. */
+static PetscErrorCode SumSprings(const Model *m, const Explicit *e)
 {
-  const PetscReal dt = case_courant(&m->c->analysis) * e->critical;
-  const PetscReal most = MOST * (1 - PetscSqr(case_courant_of_musl(&m->c->analysis)));
   const Contact *s = m->contact;
   PetscReal *at = e->springs;
 
   PetscFunctionBeginUser;
-  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) c->borne = 1;
-  if (!materials_yield(m->c->n_materials, m->materials)) PetscFunctionReturn(0); /* bodies stay whole */
   for (PetscInt k = 0; k < e->n_active; ++k) {
     at[2 * e->active[k]] = 0;
     at[2 * e->active[k] + 1] = e->sum[e->active[k] * e->width];
   }
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
-    for (PetscInt k = c->first; k < c->first + c->n; ++k) at[2 * s->node[k]] += PetscAbsReal(s->N[k]) * c->law.penalty;
+    for (PetscInt k = c->first; k < c->first + c->n; ++k)
+      at[2 * s->node[k]] += PetscMax(PetscAbsReal(s->N[k]), PetscAbsReal(s->N[k] - s->lead[k])) * c->law.penalty;
   PetscCall(NodesShare(m, 2, at));
+  PetscFunctionReturn(0);
+}
+
+/* Row sum of N M^-1 N^T k, 1/s2, which bounds the square of the frequency of the springs, where this one acts `out` of
+ * the way from its point (0) to the surface (1). */
+static PetscReal row_of(const Contact *s, const ContactPoint *c, const PetscReal *at, PetscReal out)
+{
+  PetscReal sum = 0;
+  for (PetscInt k = c->first; k < c->first + c->n; ++k) {
+    const PetscReal *node = at + 2 * s->node[k];
+    if (node[1] > 1e-300) sum += PetscAbsReal(s->N[k] - (1 - out) * s->lead[k]) * node[0] / node[1];
+  }
+  return sum;
+}
+
+/* Force, torque and the gap's change are those of the place `out` of the way from its point to the surface. */
+static void draw_in(const Contact *s, ContactPoint *c, PetscReal out)
+{
+  for (PetscInt k = c->first; k < c->first + c->n; ++k) {
+    s->N[k] -= (1 - out) * s->lead[k];
+    s->lead[k] *= out;
+  }
+  for (int d = 0; d < 3; ++d) c->x[d] += (1 - out) * c->reach * c->normal[d];
+}
+
+/* A node that points hardly reach has next to no mass, and functions at the surface give it a share of the springs all
+ * the same; at the point itself the share goes with the mass. Where laws yield, and points come to such nodes and leave
+ * them, springs are no stiffer than the substep bears; what that would soften more than SOFTEST times acts nearer to
+ * its point instead. A spring without stiffness lets the wall in, which has it back, many times over, when the point
+ * has passed the line of the grid (docs/theory.md, section 73). */
+static PetscErrorCode Limit(const Model *m, const Explicit *e)
+{
+  const PetscReal dt = case_courant(&m->c->analysis) * e->critical;
+  const PetscReal most = MOST * (1 - PetscSqr(case_courant_of_musl(&m->c->analysis))) / PetscSqr(dt);
+  const Contact *s = m->contact;
+
+  PetscFunctionBeginUser;
+  for (ContactPoint *c = s->point; c < s->point + s->n; ++c) c->borne = 1;
+  if (!materials_yield(m->c->n_materials, m->materials)) PetscFunctionReturn(0); /* bodies stay whole */
+  PetscCall(SumSprings(m, e));
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    PetscReal square = 0; /* of a frequency */
-    for (PetscInt k = c->first; k < c->first + c->n; ++k) {
-      const PetscReal *node = at + 2 * s->node[k];
-      if (node[1] > 1e-300) square += PetscAbsReal(s->N[k]) * node[0] / node[1];
-    }
-    c->borne = square * dt * dt > most ? most / (square * dt * dt) : 1;
+    const PetscReal surface = row_of(s, c, e->springs, 1);
+    if (!(surface > most)) continue;
+    const PetscReal point = row_of(s, c, e->springs, 0), row = PetscMin(surface, SOFTEST * PetscMax(most, point));
+    if (row < surface) draw_in(s, c, (row - point) / (surface - point));
+    c->borne = most / row;
     c->law.penalty *= c->borne;
     c->law.along *= c->borne;
   }
