@@ -98,6 +98,7 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   if (c->n_walls + c->n_interfaces) m->points->components[POINT_REACH] = 1;
   if (m->points->components[POINT_REACH]) m->points->components[POINT_CORNER] = m->dim;
   if (m->points->components[POINT_REACH]) m->points->components[POINT_FACE] = m->dim;
+  if (c->n_interfaces) m->points->components[POINT_BESIDE] = m->dim;
   m->points->components[POINT_CONTACT] =
     (c->n_walls + c->n_interfaces) * contact_kept_partner(m->dim, contact_sides(c));
   if (m->grid->n_fields > 1 || (m->method->clouds && c->n_interfaces)) m->points->components[POINT_FIELD] = 1;

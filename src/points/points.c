@@ -55,6 +55,7 @@ PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Po
   new->components[POINT_SLOPE] = 0;
   new->components[POINT_REACH] = 0;
   new->components[POINT_CORNER] = 0;
+  new->components[POINT_BESIDE] = 0;
   new->components[POINT_FACE] = 0;
   new->components[POINT_CONTACT] = 0;
   new->components[POINT_FIELD] = 0;

@@ -49,6 +49,9 @@ typedef enum {
   /* from there to the side of its body that it stands beside, or the corner or edge where such sides meet, at the
    * start, m; nothing inside, and where the surface cuts cells: dim where there are walls, otherwise 0 components */
   POINT_CORNER,
+  /* sum of the unit normals, outwards, of the sides that the last leads to, at the start; nothing where the surface
+   * cuts cells: dim where bodies meet at interfaces, otherwise 0 components */
+  POINT_BESIDE,
   /* the part of its body's surface that it stands for, at the start, as a vector outwards, m2 (in rings m, of the
    * section); nothing where whole cells of the grid say it, which the material goes through: dim where there are walls,
    * otherwise 0 components */

@@ -31,6 +31,7 @@ static const struct {
   [POINT_SLOPE] = {"slope", NULL},
   [POINT_REACH] = {"reach", "m"},
   [POINT_CORNER] = {"corner", "m"},
+  [POINT_BESIDE] = {"beside", NULL},
   [POINT_FACE] = {"face", "m2"},
   [POINT_CONTACT] = {"contact", "N"},
   [POINT_FIELD] = {"velocity_field", NULL},
@@ -68,12 +69,14 @@ PetscErrorCode PointsToTable(const Points *points, const Grid *grid, const char 
   PetscFunctionReturn(0);
 }
 
-/* Followers could not leave the grid in the checkpoints of older programs. */
+/* In the checkpoints of older programs followers could not leave the grid, and points did not know the sides that they
+ * stand beside. */
 static PetscBool is_absent(const Table *table, int field)
 {
-  for (PetscInt k = 0; k < table->n && field == POINT_OVERHANG; ++k)
+  const PetscBool newer = (PetscBool)(field == POINT_OVERHANG || field == POINT_BESIDE);
+  for (PetscInt k = 0; k < table->n && newer; ++k)
     if (!strcmp(table->column[k].name, reals[field].name)) return PETSC_FALSE;
-  return field == POINT_OVERHANG;
+  return newer;
 }
 
 /* This rank's rows of the table behind those in points; cells are still those of the whole grid. No

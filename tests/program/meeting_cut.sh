@@ -66,4 +66,71 @@ for turn in 10 26; do
   awk -F, 'END { exit !($3 < 2.5 && $3 > -2.5) }' slides/history.csv || fail "$name: $(tail -n 1 slides/history.csv)" # of 250 J
 done
 
+# --- a block on a slope of 25 degrees, which needs a friction of 0.4628 to stand: its foremost point met a plane that
+# was none, 0.6 of a cell ahead, and held it there in a single step (slid by 0.06 m, by 0.44) ---
+cat >slope.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+basis: {gimp: {}}
+analysis: {type: static, steps: 1}
+grid: {box: {min: [-0.5, -0.5], max: [3, 2]}, size: 0.1}
+bodies:
+  - {name: wedge, material: r, shape: {polygon: [[0.033, -0.3], [2.233, -0.3], [2.233, 0], [0.033, 1.0258768479]]}}
+  - {name: block, material: r,
+     shape: {polygon: [[0.5767846722, 0.7723058909], [1.3018309019, 0.4342112815], [1.4708782065, 0.7967343963],
+       [0.7458319769, 1.1348290057]]}}
+materials: {r: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+walls: [{name: floor, shape: {half-space: {point: [0, -0.3], normal: [0, 1]}}, contact: bonded}]
+interfaces: [{name: f, between: [block, wedge], friction: 0.44}]
+loads: {gravity: [0, -9.81]}
+output: {fields: [displacement], every: end}
+END
+expect "slides off" 1 "$talus" run slope.yaml --out slope --force --quiet
+says err.txt "Friction may be overcome: 'block' slides at 16 of the 16 places"
+expect "stands" 0 on_ranks 2 "$talus" run slope.yaml --out slope --force --quiet --set 'interfaces[0].friction=0.48'
+
+# --- a block of cells that are taller than wide, on flat ones: points at its corners are nearer to its ends than to its
+# foot, which is plane all the same ---
+rectangle() { # NAME FIRST X0 Y0 X1 Y1 CELLS ROWS
+  awk -v n="$1" -v f="$2" -v x0="$3" -v y0="$4" -v x1="$5" -v y1="$6" -v c="$7" -v r="$8" 'BEGIN {
+    printf "Point(%d)={%g,%g,0,1};Point(%d)={%g,%g,0,1};Point(%d)={%g,%g,0,1};Point(%d)={%g,%g,0,1};\n", f, x0, y0, f + 1, x1, y0, f + 2, x1, y1, f + 3, x0, y1
+    for (k = 0; k < 4; ++k) printf "Line(%d)={%d,%d};", f + k, f + k, f + (k + 1) % 4
+    printf "\nLine Loop(%d)={%d,%d,%d,%d};Plane Surface(%d)={%d};\n", f, f, f + 1, f + 2, f + 3, f, f
+    printf "Transfinite Line{%d,%d}=%d;Transfinite Line{%d,%d}=%d;", f, f + 2, c + 1, f + 1, f + 3, r + 1
+    printf "Transfinite Surface{%d};Recombine Surface{%d};Physical Surface(\"%s\")={%d};\n", f, f, n, f }'
+}
+tall() { # CELLS ROWS of the block, CELLS ROWS of the wedge
+  rectangle block 1 0.633 1.2 1.433 1.6 $1 $2
+  rectangle wedge 5 0.033 0.7 2.233 1.2 $3 $4
+  echo 'Physical Line("foot")={5};'
+}
+cat >tall.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 1, smallest: 1}
+grid: {mesh: tall.geo}
+bodies:
+  - {name: wedge, region: wedge, points_per_cell: 4, material: r}
+  - {name: block, region: block, points_per_cell: 4, material: r}
+materials: {r: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
+boundary: [{on: {boundary: foot}, fix: [x, y]}]
+interfaces: [{name: f, between: [block, wedge], friction: 0.45}]
+loads: {gravity: [4.14588514768, -8.89087939083]}
+measures: {x: {interface_force: x, of: {interface: f}}, y: {interface_force: y, of: {interface: f}}}
+output: {fields: [displacement], every: end}
+END
+for method in fem gmm; do
+  tall 5 2 14 7 >tall.geo
+  expect "stood, $method" 1 "$talus" run tall.yaml --out tall --force --quiet --set method=$method
+  expect "stands, $method" 0 "$talus" run tall.yaml --out tall --force --quiet --set method=$method --set 'interfaces[0].friction=0.48'
+  tall 5 2 8 4 >tall.geo
+  expect "was refused, $method" 0 on_ranks 2 "$talus" run tall.yaml --out tall --force --quiet --set method=$method \
+    --set 'loads.gravity=[0, -9.81]'
+done
+tall 5 2 14 7 >tall.geo
+expect "slides in time" 0 "$talus" run tall.yaml --out tall --force --quiet --set 'interfaces[0].friction=0.3' \
+  --set 'analysis={type: dynamic, end: 0.2, step: 2e-3, bossak: -0.3}' --set 'loads.gravity_amplitude=[[0, 0], [0.2, 1]]'
+awk -F, 'NR > 20 && ($3 / $4 > -0.29 || $3 / $4 < -0.31) { bad = 1 } END { exit bad }' tall/history.csv ||
+  fail "$name: $(cut -d, -f1,3,4 tall/history.csv)"
+
 finish

@@ -265,12 +265,102 @@ static void test_trough(void **state)
     }
 }
 
+/* A block of cells of so many metres a side, each with the four points of Gauss's rule, as meshes of them are seeded. */
+static void add_cells(Body *b, PetscReal angle, const PetscReal *low, const int *n, const PetscReal *side)
+{
+  const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle), gauss = 0.5 - 0.5 / PetscSqrtReal(3);
+  const PetscReal narrow = 0.5 * PetscMin(side[0], side[1]);
+  for (int k = 0; k < 4 * n[0] * n[1]; ++k) {
+    const int cell[2] = {k / 2 % n[0], k / 4 / n[0]}, half[2] = {k % 2, k / 2 / n[0] % 2};
+    PetscReal at[2], corner[2] = {0, 0}, beside[2] = {0, 0}, first = 0.5 * PetscSqrtReal(side[0] * side[1]);
+    for (int d = 0; d < 2; ++d) {
+      const PetscReal away = gauss * side[d];
+      const int outer = half[d] ? cell[d] == n[d] - 1 : cell[d] == 0;
+      at[d] = low[d] + cell[d] * side[d] + (half[d] ? side[d] - away : away);
+      if (outer) beside[d] = half[d] ? 1 : -1, corner[d] = beside[d] * away, first = PetscMin(first, away);
+    }
+    add(b, c * at[0] - s * at[1], s * at[0] + c * at[1], PetscSqrtReal(side[0] * side[1]) / 2);
+    SurfacePoint *p = b->point + b->surface.n - 1;
+    p->first = p->reach =
+      beside[0] != 0 || beside[1] != 0 ? PetscMin(first, narrow) : gauss * PetscMin(side[0], side[1]);
+    p->corner[0] = c * corner[0] - s * corner[1], p->corner[1] = s * corner[0] + c * corner[1];
+    p->shift[0] = p->corner[0] - p->first * (c * beside[0] - s * beside[1]);
+    p->shift[1] = p->corner[1] - p->first * (s * beside[0] + c * beside[1]);
+  }
+}
+
+/* Points at corners of cells that are taller than wide are nearer to the end of their body than to its foot, and are no
+ * less of the plane that this is: blocks of any cells on bases of any. */
+static void test_tall_cells(void **state)
+{
+  static Body upper, lower;
+  static const PetscReal sides[][2] = {{0.16, 0.2}, {0.1, 0.3}, {0.2, 0.3}, {0.2, 0.1}};
+  SurfacePair pair;
+  (void)state;
+  for (int k = 0; k < 24; ++k)
+    for (int i = 0; i < 4; ++i) {
+      const PetscReal angle = 0.27 * k, c = PetscCosReal(angle), s = PetscSinReal(angle), tall = sides[i][1];
+      int met = 0;
+      upper.surface.n = lower.surface.n = 0;
+      add_cells(&lower, angle, (PetscReal[]){-1, -0.5}, (int[]){12, 4}, (PetscReal[]){0.275, 0.125});
+      add_cells(&upper, angle, (PetscReal[]){-0.367 + 0.01 * k, 0}, (int[]){5, 2}, sides[i]);
+      close_body(&lower);
+      close_body(&upper);
+      for (const SurfacePoint *p = upper.point; p < upper.point + upper.surface.n; ++p) {
+        const PetscReal height = c * p->x[1] - s * p->x[0];
+        if (height > 0.25 * tall) continue;
+        assert_true(surface_meet(&upper.surface, p, &lower.surface, PetscMin(0.125, sides[i][0]), &pair));
+        assert_true(PetscAbsReal(pair.normal[0] + s) < 1e-9 && PetscAbsReal(pair.normal[1] - c) < 1e-9);
+        assert_true(PetscAbsReal(pair.gap - height) < 1e-9);
+        ++met;
+      }
+      assert_true(met == 10);
+    }
+}
+
+/* The foremost corner of a block of cut cells on a slope of 25 degrees: the point of its front has no side of the slope
+ * before it, however its few neighbours stand (it met one that leant by 22 degrees, and held the block there). */
+static void test_front(void **state)
+{
+  static const PetscReal block[][3] = {
+    {1.17523, 0.52525, 0.02901}, {1.18692, 0.49390, 0.00553}, {1.225, 0.575, 0.025}, {1.225, 0.525, 0.025},
+    {1.22824, 0.48426, 0.01426}, {1.275, 0.525, 0.025},       {1.275, 0.575, 0.025}, {1.27682, 0.47294, 0.02453},
+    {1.31089, 0.47697, 0.00987}, {1.3226, 0.5272, 0.02048},   {1.325, 0.575, 0.025},
+  };
+  static const PetscReal slope[][3] = {
+    {1.173, 0.47183, 0.02035},   {1.175, 0.425, 0.025}, {1.22015, 0.46115, 0.0101},  {1.225, 0.375, 0.025},
+    {1.225, 0.425, 0.025},       {1.275, 0.325, 0.025}, {1.27292, 0.42385, 0.02161}, {1.275, 0.375, 0.025},
+    {1.32507, 0.41169, 0.01059}, {1.325, 0.375, 0.025}, {1.37398, 0.37371, 0.02434}, {1.375, 0.325, 0.025},
+    {1.42137, 0.36423, 0.0129},  {1.325, 0.325, 0.025},
+  };
+  const PetscReal c = PetscCosReal(25 * PETSC_PI / 180), s = PetscSinReal(25 * PETSC_PI / 180);
+  static Body upper, lower;
+  SurfacePair pair;
+  (void)state;
+  upper.surface.n = lower.surface.n = 0;
+  for (size_t k = 0; k < sizeof block / sizeof *block; ++k) add(&upper, block[k][0], block[k][1], 0.05);
+  for (size_t k = 0; k < sizeof slope / sizeof *slope; ++k) add(&lower, slope[k][0], slope[k][1], 0.05);
+  for (int k = 0; k < upper.surface.n; ++k) upper.point[k].first = upper.point[k].reach = block[k][2];
+  for (int k = 0; k < lower.surface.n; ++k) {
+    SurfacePoint *p = lower.point + k;
+    p->first = p->reach = slope[k][2];
+    if (slope[k][2] != 0.025) p->face[0] = 0.05 * s, p->face[1] = 0.05 * c; /* cells that are cut */
+  }
+  upper.point[8].own = 0.0336; /* a corner of a cell is left of its part */
+  close_body(&upper);
+  close_body(&lower);
+  for (const SurfacePoint *p = upper.point; p < upper.point + upper.surface.n; ++p)
+    if (surface_meet(&upper.surface, p, &lower.surface, 0.1, &pair))
+      assert_true(PetscAbsReal(pair.normal[0] - s) < 1e-3 && PetscAbsReal(pair.normal[1] - c) < 1e-3);
+}
+
 int main(void)
 {
   const struct CMUnitTest tests[] = {
     cmocka_unit_test(test_planes), cmocka_unit_test(test_corner), cmocka_unit_test(test_circles),
     cmocka_unit_test(test_sunk),   cmocka_unit_test(test_edges),  cmocka_unit_test(test_cover),
-    cmocka_unit_test(test_trough), cmocka_unit_test(test_cut),
+    cmocka_unit_test(test_trough), cmocka_unit_test(test_cut),    cmocka_unit_test(test_tall_cells),
+    cmocka_unit_test(test_front),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

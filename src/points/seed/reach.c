@@ -69,7 +69,7 @@ PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *positio
  * counts: towards a wall between their normals it would be farther ahead than the surface of the points beside is,
  * which know of none, by the angle; the nearest side is enough there. */
 void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, const SeedRule *rule, PetscInt q,
-                 const unsigned char *outer, PetscReal *corner)
+                 const unsigned char *outer, PetscReal *corner, PetscReal *beside)
 {
   const Cell *cell = cells + type;
   PetscReal normal[3][3] = {{0}}, away[3], square, along;
@@ -93,7 +93,10 @@ void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, c
   }
   for (PetscInt d = 0; d < cell->dim; ++d) corner[d] = 0;
   for (PetscInt k = 0; k < n; ++k)
-    for (PetscInt d = 0; d < cell->dim && (square_on || k == nearest); ++d) corner[d] += away[k] * normal[k][d];
+    for (PetscInt d = 0; d < cell->dim && (square_on || k == nearest); ++d) {
+      corner[d] += away[k] * normal[k][d];
+      if (beside) beside[d] += normal[k][d];
+    }
 }
 
 PetscBool seed_half_sides(CellType type, const PetscReal *x, PetscReal *half)

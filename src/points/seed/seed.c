@@ -271,7 +271,8 @@ static PetscErrorCode SeedPoint(const Seeding *s, Points *points, PetscInt k, co
     seed_corner_of_part(s, grid_cell_type(s->source, cell), x, part, position, *point_real(points, POINT_REACH, p),
                         outer, point_real(points, POINT_CORNER, p));
   if (points->components[POINT_CORNER] && !part)
-    seed_corner(grid_cell_type(s->source, cell), x, position, rule, q, outer, point_real(points, POINT_CORNER, p));
+    seed_corner(grid_cell_type(s->source, cell), x, position, rule, q, outer, point_real(points, POINT_CORNER, p),
+                points->components[POINT_BESIDE] ? point_real(points, POINT_BESIDE, p) : NULL);
   if (s->faces && (part || s->source != s->grid || !s->equal))
     seed_face(s, cell, x, q, part, outer, point_real(points, POINT_FACE, p));
   if (points->components[POINT_SLOPE]) seed_slope(s->body, dim, point_real(points, POINT_SLOPE, p));

@@ -141,9 +141,9 @@ PetscBool seed_box_parts(const Seeding *s, CellType type, const PetscReal *x, co
 void seed_corner_of_part(const Seeding *s, CellType type, const PetscReal *x, const SeedPart *part,
                          const PetscReal *position, PetscReal reach, const unsigned char *outer, PetscReal *corner);
 /* From the same point to these sides, or to the corner or edge where several of them meet at right angles; of others to
- * the nearest; 0 inside. */
+ * the nearest; 0 inside. beside: gets the sum of the unit normals of these; NULL: nobody asks. */
 void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, const SeedRule *rule, PetscInt q,
-                 const unsigned char *outer, PetscReal *corner);
+                 const unsigned char *outer, PetscReal *corner, PetscReal *beside);
 
 /* The surface of the q-th point of the cell's rule, with nodes at x: that of its part, and what of the sides that are
  * `outer` is that; of one that has all of its part (NULL) the sides that it lies along. */

@@ -59,6 +59,7 @@ void contact_let_reach(Points *points, PetscInt p, const PetscReal n[3], PetscRe
   point_F(points, p, F);
   for (PetscInt d = 0; d < points->dim; ++d) ahead -= corner[d] * n[d];
   for (PetscInt d = 0; d < points->dim; ++d) corner[d] -= (reach / F[0] - ahead) * n[d];
+  for (PetscInt d = 0; d < points->components[POINT_BESIDE]; ++d) point_real(points, POINT_BESIDE, p)[d] = 0;
 }
 
 PetscReal contact_farthest(const Points *points, PetscInt p)

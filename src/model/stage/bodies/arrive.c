@@ -32,6 +32,19 @@ static PetscReal flattest(CellType type, PetscInt dim, const PetscReal *X, const
   return least;
 }
 
+/* Normals of sides, of which the sum is as long as it was: that of one side, and of sides that turn together, is
+ * exact. */
+static void carry_normals(PetscInt dim, const PetscReal inverse[9], PetscReal *beside)
+{
+  PetscReal was[3] = {0}, before = 0, now = 0;
+  for (PetscInt d = 0; d < dim; ++d) was[d] = beside[d], before += PetscSqr(was[d]);
+  for (PetscInt d = 0; d < dim; ++d) {
+    beside[d] = inverse[d] * was[0] + inverse[3 + d] * was[1] + inverse[6 + d] * was[2];
+    now += PetscSqr(beside[d]);
+  }
+  for (PetscInt d = 0; d < dim && before > 0; ++d) beside[d] *= PetscSqrtReal(before / now);
+}
+
 /* Vectors to the surface, and areas of it, go with the matter that was drawn. */
 static void carry_surface(Points *points, PetscInt p, const PetscReal G[9], PetscReal J)
 {
@@ -47,6 +60,7 @@ static void carry_surface(Points *points, PetscInt p, const PetscReal G[9], Pets
   }
   for (PetscInt d = 0; d < points->components[POINT_FACE]; ++d)
     face[d] = J * (inverse[d] * area[0] + inverse[3 + d] * area[1] + inverse[6 + d] * area[2]);
+  carry_normals(points->components[POINT_BESIDE], inverse, point_real(points, POINT_BESIDE, p));
   for (PetscInt d = 0; d < points->components[POINT_REACH]; ++d)
     point_real(points, POINT_REACH, p)[d] *=
       before > 0 ? PetscSqrtReal(now / before) : PetscPowReal(J, 1 / (PetscReal)dim);

@@ -19,6 +19,8 @@ typedef struct {
   PetscInt rank, owner; /* its rank, and its index there */
   PetscReal x[3], F[9];
   PetscReal first, corner[3]; /* POINT_REACH, POINT_CORNER, m */
+  PetscReal shift[3];         /* from x to the middle of the disk, in space ball, that touches all sides beside it, m */
+  PetscBool bent;             /* does it stand beside several sides of its body, as at a corner? */
   PetscReal reach;            /* what strain has made of the first on the whole, m */
   /* side of a square of its part of the section, in space of a cube of its volume, m; of a part that the body's surface
    * cuts what one has that it does not: others stand so far off */
@@ -32,7 +34,7 @@ typedef struct {
 } SurfacePoint;
 
 /* Those of one body that are near another one, of all ranks on each: ascending along x, in space row by row. */
-typedef struct {
+typedef struct Surface {
   PetscInt dim, n;
   SurfacePoint *point;
   PetscInt n_carriers;

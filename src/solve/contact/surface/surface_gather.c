@@ -5,8 +5,9 @@
 #include "solve/contact/contact.h"
 #include "solve/contact/surface/surface.h"
 
-#define CUT 0.99 /* of the size of a whole part: round-off cuts nothing */
-#define TORN 0.5 /* strain beyond which nobody knows where a surface looks */
+#define CUT 0.99    /* of the size of a whole part: round-off cuts nothing */
+#define SEVERAL 1.5 /* square of the sum of unit normals: 1 of one side, 2 or 3 of those at right angles */
+#define TORN 0.5    /* strain beyond which nobody knows where a surface looks */
 
 PetscErrorCode SurfaceBounds(const SurfaceInput *in, PetscInt n_bodies, PetscReal *bounds)
 {
@@ -59,6 +60,22 @@ static void take_face(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
   }
 }
 
+/* The sides that a point stands beside. As far from the nearest one as the point is, its disk touches that alone: beside
+ * a corner of cells that are taller than wide it would hang before the face that its neighbours lie on, which hulls then
+ * took for a slope. Where the surface cuts cells only a corner says how far it is. */
+static void take_sides(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
+{
+  const Points *points = in->points;
+  const PetscInt dim = points->components[POINT_BESIDE];
+  const PetscReal *beside = dim ? point_real(points, POINT_BESIDE, p) : NULL, *F = s->F;
+  PetscReal sides = 0;
+  for (PetscInt d = 0; d < dim; ++d) sides += PetscSqr(beside[d]);
+  s->bent = (PetscBool)(sides == 0 ? vector_dot(s->corner, s->corner) > 0 : sides > SEVERAL);
+  if (sides == 0 || (in->materials[points->material[p]].law->yields && contact_is_strained(points, p, TORN))) return;
+  for (int i = 0; i < 3; ++i)
+    for (PetscInt d = 0; d < dim; ++d) s->shift[i] += F[3 * i + d] * (s->corner[d] - s->first * beside[d]);
+}
+
 static void describe(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
 {
   const Points *points = in->points;
@@ -80,6 +97,7 @@ static void describe(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
   s->reach = s->first * (points->dim == 2 ? PetscSqrtReal(J / s->F[8]) : PetscCbrtReal(J));
   s->size = points->dim == 2 ? PetscSqrtReal(volume / weight) : PetscCbrtReal(volume);
   s->own = s->size;
+  take_sides(in, p, s);
   take_face(in, p, s);
   if (vector_dot(s->face, s->face) == 0) return;
   const PetscReal whole = J * uncut(in, p), side = points->dim == 2 ? PetscSqrtReal(whole) : PetscCbrtReal(whole);

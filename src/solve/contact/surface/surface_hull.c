@@ -24,11 +24,11 @@ static void farthest(const Part *part, const PetscReal d[3], PetscReal out[3])
   PetscReal most = -PETSC_MAX_REAL;
   for (PetscInt k = 0; k < part->n; ++k) {
     const SurfacePoint *s = part->point[k];
-    const PetscReal height = vector_dot(s->x, d) + s->reach - part->least;
+    const PetscReal height = vector_dot(s->x, d) + vector_dot(s->shift, d) + s->reach - part->least;
     if (height > most) most = height, best = s;
   }
   const PetscReal wider = best->reach - part->least;
-  for (int i = 0; i < 3; ++i) out[i] = best->x[i] + wider * d[i];
+  for (int i = 0; i < 3; ++i) out[i] = best->x[i] + best->shift[i] + wider * d[i];
 }
 
 /* Corner of a - b that is farthest against n. */

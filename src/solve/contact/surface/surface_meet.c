@@ -205,6 +205,14 @@ static PetscBool meet_way(const SurfacePoint *p, const Part *mine, const Part *t
   return PETSC_TRUE;
 }
 
+/* Does a way lean from the plane surface that it meets, across which that between hulls is? Then it is across no side:
+ * it is that from points beside a corner of the first body, which look elsewhere. */
+static PetscBool leans(PetscInt dim, const PetscReal whole[3], const SurfacePair *side)
+{
+  return (PetscBool)(!side->other->bent && plane_width(dim, side->other, whole) > 0 &&
+                     vector_dot(whole, side->normal) < 1 - SQUARE);
+}
+
 /* Is the way that was found anew, with its gap, better than that between hulls? Not if a block would be deeper in it by
  * that; and in the plane, where ways out are exact, not if what touches across a curved side would stand off. */
 static PetscBool is_side(PetscInt dim, const SurfacePoint *p, const SurfacePair *whole, PetscReal gap,
@@ -230,7 +238,8 @@ PetscBool surface_meet(const Surface *a, const SurfacePoint *p, const Surface *b
   hull_face(&mine, &theirs, 0.5 * (p->own + q->own), n);
   PetscBool meets = meet_way(p, &mine, &theirs, n, pair, &gap);
   if (take_side(p, &mine, q, &theirs, n, &way) && meet_way(p, &mine, &way.theirs, way.n, &other, &farther))
-    if (!meets || is_side(a->dim, p, pair, gap, &other, farther)) *pair = other, meets = PETSC_TRUE;
+    if (!leans(a->dim, n, &other) && (!meets || is_side(a->dim, p, pair, gap, &other, farther)))
+      *pair = other, meets = PETSC_TRUE;
   if (!meets) return PETSC_FALSE;
   pair->cover = surface_cover(a, p, b, pair);
   return pair->cover > 0;
