@@ -343,6 +343,7 @@ static PetscErrorCode Build(Model *m, Diag *diag)
   PetscCall(CheckLevel(m, diag));
   PetscCall(AdviseBeside(m, diag));
   if (!m->time) PetscCall(AdviseHangs(m, diag));
+  if (!m->time) PetscCall(AdviseStairs(m, diag));
   if (!m->time && !case_goes_on(m->c)) PetscCall(AstrideLook(m));
   astride_tell(m, diag);
   PetscCall(AdvisePassing(m, diag));

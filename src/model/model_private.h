@@ -239,6 +239,9 @@ PetscErrorCode InterfacesSettle(Model *model);
 /* Collective. One of the bodies of interface k has just come: where it was drawn to touch the other one, which has
  * settled since, it does, up to a tenth of a cell. */
 PetscErrorCode InterfaceCloses(Model *model, PetscInt k);
+struct Surface;
+/* Collective. The surfaces (2) of the bodies of interface k where they are near each other: to be cleared. */
+PetscErrorCode InterfaceSurfaces(const Model *model, PetscInt k, struct Surface *body);
 /* Collective. Interfaces that are bonded from this stage on hold what touches. */
 PetscErrorCode InterfacesBond(Model *model, const Case *from);
 /* contact/bonds.c. Collective. And walls, too. */
@@ -376,6 +379,8 @@ PetscErrorCode CheckLevel(Model *model, Diag *diag);
 /* hangs.c. Collective. The same of what holds a body only where one that it meets is held; at the start, and if nothing
  * was said then at the end of a run, which may have brought it there. */
 PetscErrorCode AdviseHangs(Model *model, Diag *diag);
+/* stairs.c. Collective. The same of bodies that meet across a slanting side made of whole cells. */
+PetscErrorCode AdviseStairs(const Model *model, Diag *diag);
 /* contact/astride.c. Collective. What a stage before has told of a wall is not told again. */
 PetscErrorCode AstrideGoOn(Model *model, const Model *before);
 /* held.c. Collective. Nodes (n_nodes) that the body touches, on all copies: 0 for the others. */

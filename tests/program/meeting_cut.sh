@@ -133,4 +133,16 @@ expect "slides in time" 0 "$talus" run tall.yaml --out tall --force --quiet --se
 awk -F, 'NR > 20 && ($3 / $4 > -0.29 || $3 / $4 < -0.31) { bad = 1 } END { exit bad }' tall/history.csv ||
   fail "$name: $(cut -d, -f1,3,4 tall/history.csv)"
 
+# --- whole cells of a box along a slope are stairs: a run says so, and says nothing of level ones ---
+sed 's/^method.*/method: fem/; /^basis/d; s/^analysis.*/analysis: {type: dynamic, end: 0.002, step: 0.001}/
+  s/^interfaces.*/interfaces: [{name: f, between: [block, wedge], contact: frictionless}]/' slope.yaml >stairs.yaml
+for method in fem gmm; do
+  expect "stairs, $method" 0 on_ranks 2 "$talus" run stairs.yaml --out stairs --force --quiet --set method=$method
+  says err.txt "its shape slants at 'f'"
+  expect "level, $method" 0 "$talus" run stairs.yaml --out stairs --force --quiet --set method=$method \
+    --set 'bodies[0].shape={box: {min: [0, 0], max: [2, 0.73]}}' --set 'bodies[1].shape={box: {min: [0.5, 0.73], max: [1.27, 1.2]}}' \
+    --set 'walls[0].shape={half-space: {point: [0, 0], normal: [0, 1]}}'
+  lacks err.txt "slants at"
+done
+
 finish

@@ -249,8 +249,7 @@ PetscErrorCode InterfacesSettle(Model *m)
   PetscFunctionReturn(0);
 }
 
-/* Surfaces of both bodies of one interface. */
-static PetscErrorCode GatherOne(const Model *m, PetscInt k, Surface body[2])
+PetscErrorCode InterfaceSurfaces(const Model *m, PetscInt k, Surface *body)
 {
   const SurfaceInput in = surface_input(m);
   PetscReal *bounds;
@@ -272,7 +271,7 @@ PetscErrorCode InterfaceCloses(Model *m, PetscInt k)
 
   PetscFunctionBeginUser;
   PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
-  PetscCall(GatherOne(m, k, body));
+  PetscCall(InterfaceSurfaces(m, k, body));
   for (const SurfacePoint *p = body[0].point; p < body[0].point + body[0].n; ++p) {
     if (p->rank != rank || !surface_meet(body, p, body + 1, m->grid->smallest, &pair)) continue;
     const PetscReal gap = pair.gap - contact_reach_of(m->points, p->owner, pair.normal);
@@ -303,7 +302,7 @@ PetscErrorCode InterfacesBond(Model *m, const Case *from)
   PetscCallMPI(MPI_Comm_rank(m->comm, &rank));
   for (PetscInt k = 0; k < m->c->n_interfaces; ++k) {
     if (m->c->interfaces[k].contact != CONTACT_BONDED || was_bonded(m->c->interfaces + k, from)) continue;
-    PetscCall(GatherOne(m, k, body));
+    PetscCall(InterfaceSurfaces(m, k, body));
     for (const SurfacePoint *p = body[0].point; p < body[0].point + body[0].n; ++p) {
       if (p->rank != rank || !surface_meet(body, p, body + 1, m->grid->smallest, &pair)) continue;
       PetscReal *kept = contact_kept(m->points, p->owner, m->c->n_walls + k, contact_sides(m->c), 0);
