@@ -599,6 +599,37 @@ static void thin_parts_press_where_they_are(void **state)
   free_all(t, grid, points);
 }
 
+/* Towards each of two sides of a cell that meet at 87 degrees, as a round surface and a plane of symmetry do, the point
+ * between them reaches as far as that side is. Turned, the cell has them the other way round. */
+static void skew_corners_know_both_sides(void **state)
+{
+  static const PetscReal cell[2][8] = {{0, 0, 1, 0.05, 1, 1, 0, 1}, {0, 0, 1, 0, 1, 1, 0.05, 1}};
+  SeedRule rule = {.n = 4, .side = 2};
+  (void)state;
+  CHECK(cell_quadrature(CELL_QUADRILATERAL, 4, rule.xi, rule.weight));
+  for (int k = 0; k < 2; ++k) {
+    const PetscReal *x = cell[k];
+    unsigned char outer[4];
+    PetscReal area[3], position[3], corner[3];
+    PetscInt q = 0;
+    for (PetscInt side = 0; side < 4; ++side) {
+      cell_side_area(CELL_QUADRILATERAL, side, x, area);
+      outer[side] = area[0] < -0.5 || area[1] < -0.5;
+    }
+    while (rule.xi[2 * q] > 0 || rule.xi[2 * q + 1] > 0) ++q;
+    cell_position(CELL_QUADRILATERAL, x, rule.xi + 2 * q, position);
+    const PetscReal reach = seed_reach(CELL_QUADRILATERAL, x, position, 0.25, &rule, q, outer);
+    seed_corner(CELL_QUADRILATERAL, x, position, &rule, q, outer, corner);
+    for (PetscInt side = 0; side < 4; ++side) {
+      if (!outer[side]) continue;
+      cell_side_area(CELL_QUADRILATERAL, side, x, area);
+      const PetscReal size = PetscSqrtReal(area[0] * area[0] + area[1] * area[1]);
+      const PetscReal wanted = -(area[0] * position[0] + area[1] * position[1]) / size; /* both go through the origin */
+      CHECK_CLOSE(PetscMax(reach, (corner[0] * area[0] + corner[1] * area[1]) / size), wanted, 1e-12);
+    }
+  }
+}
+
 /* Where its surface follows the cells it is seeded as ever. */
 static void aligned_shape_is_the_same(void **state)
 {
@@ -631,6 +662,7 @@ int main(int argc, char **argv)
     cmocka_unit_test(planes_are_exact),
     cmocka_unit_test(surfaces_are_shared_out),
     cmocka_unit_test(thin_parts_press_where_they_are),
+    cmocka_unit_test(skew_corners_know_both_sides),
     cmocka_unit_test(aligned_shape_is_the_same),
     cmocka_unit_test(every_rule_fills_the_volume),
     cmocka_unit_test(method_chooses_the_weights),

@@ -10,6 +10,8 @@
 #define AHEAD 0.1  /* of the side of a point's part: so far a surface is looked for in front of it */
 #define FLUSH 1e-6 /* of the side of a point's part: the surface is there */
 #define ALONG 1e-6 /* cosine between normals of sides: these are not at right angles */
+#define BLUNT 0.5  /* likewise: both look at a wall between them */
+#define ROUNDS 30  /* each leaves a quarter, at most, of what the one before did */
 
 /* From the line or plane of a side: through its first nodes. */
 static PetscReal distance_to_side(const Cell *cell, PetscInt side, const PetscReal *x, const PetscReal *position)
@@ -67,13 +69,15 @@ PetscReal seed_reach(CellType type, const PetscReal *x, const PetscReal *positio
 
 /* Sides that are not at right angles, as where a curved surface ends at a plane of symmetry, have no corner that
  * counts: towards a wall between their normals it would be farther ahead than the surface of the points beside is,
- * which know of none, by the angle; the nearest side is enough there. */
+ * which know of none, by the angle. The nearest side is what the point's reach is, so the farthest is kept: with the
+ * nearest alone a point beside a plane of symmetry that is nearer than the curved surface stood off the wall there, and
+ * had none of the force that its stress asks for. */
 void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, const SeedRule *rule, PetscInt q,
                  const unsigned char *outer, PetscReal *corner, PetscReal *beside)
 {
   const Cell *cell = cells + type;
   PetscReal normal[3][3] = {{0}}, away[3], square, along;
-  PetscInt n = 0, nearest = 0;
+  PetscInt n = 0, farthest = 0;
   PetscBool square_on = PETSC_TRUE;
   for (PetscInt side = 0; side < cell->faces; ++side) {
     if (!outer[side] || !is_next_to(cell, side, rule, q)) continue;
@@ -88,12 +92,12 @@ void seed_corner(CellType type, const PetscReal *x, const PetscReal *position, c
       for (PetscInt d = 0; d < cell->dim; ++d) along += normal[n][d] * normal[k][d];
       if (PetscAbsReal(along) > ALONG) square_on = PETSC_FALSE;
     }
-    if (away[n] < away[nearest]) nearest = n;
+    if (away[n] > away[farthest]) farthest = n;
     ++n;
   }
   for (PetscInt d = 0; d < cell->dim; ++d) corner[d] = 0;
   for (PetscInt k = 0; k < n; ++k)
-    for (PetscInt d = 0; d < cell->dim && (square_on || k == nearest); ++d) {
+    for (PetscInt d = 0; d < cell->dim && (square_on || k == farthest); ++d) {
       corner[d] += away[k] * normal[k][d];
       if (beside) beside[d] += normal[k][d];
     }
@@ -213,12 +217,42 @@ void seed_place_at_side(CellType type, const PetscReal *x, PetscInt side, const 
   cell_position(type, x, at, position);
 }
 
+static PetscReal product(PetscInt dim, const PetscReal *a, const PetscReal *b)
+{
+  PetscReal sum = 0;
+  for (PetscInt d = 0; d < dim; ++d) sum += a[d] * b[d];
+  return sum;
+}
+
+/* The sum of n pieces of surface (n x dim) stands before a wall along the normal of one of them with its size alone if
+ * they are at right angles. If they are nearly so, it is turned until it does: a piece of a plane of symmetry has no
+ * part in a wall that stands round the surface beside it. (Sides that are blunter than that look at one wall both.) */
+static void part_sides(PetscInt dim, PetscInt n, const PetscReal *side, PetscReal *face)
+{
+  PetscReal most = 0;
+  for (PetscInt i = 0; i < n; ++i)
+    for (PetscInt k = 0; k < i; ++k) {
+      const PetscReal *a = side + i * dim, *b = side + k * dim;
+      const PetscReal sizes = PetscSqrtReal(product(dim, a, a) * product(dim, b, b));
+      most = PetscMax(most, PetscAbsReal(product(dim, a, b)) / sizes);
+    }
+  if (most <= ALONG || most > BLUNT) return;
+  for (int round = 0; round < ROUNDS; ++round)
+    for (PetscInt i = 0; i < n; ++i) {
+      const PetscReal *a = side + i * dim, lacks = 1 - product(dim, face, a) / product(dim, a, a);
+      for (PetscInt d = 0; d < dim; ++d) face[d] += lacks * a[d];
+    }
+}
+
 void seed_face(const Seeding *s, PetscInt cell, const PetscReal *x, PetscInt q, const SeedPart *part,
                const unsigned char *outer, PetscReal *face)
 {
   const CellType type = grid_cell_type(s->source, cell);
   const SeedRule *rule = seed_rule(s, cell);
-  for (PetscInt d = 0; d < cells[type].dim; ++d) face[d] = part ? part->face[d] : 0;
+  const PetscInt dim = cells[type].dim;
+  PetscReal given[3 * 6] = {0};
+  PetscInt n = 0;
+  for (PetscInt d = 0; d < dim; ++d) face[d] = part ? part->face[d] : 0;
   for (PetscInt side = 0; side < cells[type].faces; ++side) {
     PetscReal area[3];
     PetscInt beside = 0;
@@ -226,8 +260,10 @@ void seed_face(const Seeding *s, PetscInt cell, const PetscReal *x, PetscInt q, 
     for (PetscInt p = 0; p < rule->n; ++p) beside += is_next_to(cells + type, side, rule, p) ? 1 : 0;
     cell_side_area(type, side, x, area);
     const PetscReal share = part ? part->side[side] : 1 / (PetscReal)beside;
-    for (PetscInt d = 0; d < cells[type].dim; ++d) face[d] += share * area[d];
+    for (PetscInt d = 0; d < dim; ++d) face[d] += given[n * dim + d] = share * area[d];
+    ++n;
   }
+  if (!part) part_sides(dim, n, given, face);
 }
 
 PetscReal seed_way_out(const Seeding *s, const PetscReal *position, const PetscReal *along, PetscReal most)
