@@ -59,6 +59,7 @@ PetscErrorCode PointsCreate(PetscInt dim, PetscInt n_state, PetscInt n_force, Po
   new->components[POINT_FACE] = 0;
   new->components[POINT_CONTACT] = 0;
   new->components[POINT_FIELD] = 0;
+  new->components[POINT_SPACING] = 0;
   new->components[POINT_CARRIED] = 0;
   new->components[POINT_FLOW] = 0;
   new->components[POINT_MECHANISM] = 0;

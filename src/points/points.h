@@ -62,6 +62,9 @@ typedef enum {
   /* which velocity field of the grid carries it: 1 where bodies meet at interfaces, otherwise 0
    * components */
   POINT_FIELD,
+  /* of clouds of a mesh whose cells differ much in size: of nodes around it, at the start, m: 1 there, otherwise 0
+   * components */
+  POINT_SPACING,
   /* how far it was carried in the present event of each measure that counts some, m: one each */
   POINT_CARRIED,
   /* equivalent plastic strain that the last step added: 1 where it is to be written, otherwise 0

@@ -35,6 +35,7 @@ static const struct {
   [POINT_FACE] = {"face", "m2"},
   [POINT_CONTACT] = {"contact", "N"},
   [POINT_FIELD] = {"velocity_field", NULL},
+  [POINT_SPACING] = {"spacing", "m"},
   [POINT_CARRIED] = {"carried", "m"},
   [POINT_FLOW] = {"flow", ""},
   [POINT_MECHANISM] = {"mechanism", "m/s"},

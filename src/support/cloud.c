@@ -174,6 +174,7 @@ PetscErrorCode SupportFromClouds(Support *s, const Points *points, const Neighbo
 {
   const PetscInt dim = nodes->dim, n = points->n;
   const PetscBool has_F = points->real[POINT_F] != NULL;
+  CloudRule here = *rule;
   PetscReal F[9], from[3];
   PetscInt entries = 0;
 
@@ -190,7 +191,8 @@ PetscErrorCode SupportFromClouds(Support *s, const Points *points, const Neighbo
     if (!s->tally.entered) s->tally.first_entered = p;
     const PetscBool born = born_at(rule, points, p, from);
     const CloudOrigin origin = {.from = from, .field = point_field(points, p)};
-    entries += cloud_at(nodes + origin.field, rule, points->real[POINT_X] + (size_t)p * (size_t)dim, has_F ? F : NULL,
+    here.h = cloud_spacing_of(points, p, rule->h);
+    entries += cloud_at(nodes + origin.field, &here, points->real[POINT_X] + (size_t)p * (size_t)dim, has_F ? F : NULL,
                         born ? &origin : NULL, s->node + entries, s->N + entries, s->dN + entries * dim, &s->tally);
   }
   s->point_start[n] = n;

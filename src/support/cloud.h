@@ -8,7 +8,7 @@
 typedef struct {
   CloudBasis basis;
   CloudSupport support;
-  PetscReal h;               /* m: unit of their lengths */
+  PetscReal h;               /* m: unit of their lengths, where a point has none of its own (POINT_SPACING) */
   PetscBool follows;         /* the stretch of the material? */
   const CloudMatter *matter; /* what joins nodes to a point; NULL: that they are near */
   const PetscReal *start;    /* with it: where nodes were at the start, dim each */
@@ -19,6 +19,13 @@ typedef struct {
   const PetscReal *from;
   PetscInt field;
 } CloudOrigin;
+
+/* Spacing of the nodes around point p at the start, m: its own, or that of all. */
+static inline PetscReal cloud_spacing_of(const Points *points, PetscInt p, PetscReal all)
+{
+  const PetscReal own = points->components[POINT_SPACING] ? points->real[POINT_SPACING][p] : 0;
+  return own > 0 ? own : all;
+}
 
 /* How clouds follow a point's stretch: along a principal direction of its F in which the material is drawn out by more
  * than a fifth, lengths count by as much less, so that the cloud keeps its nodes (docs/theory.md, "Meshfree bases").

@@ -53,7 +53,7 @@ static PetscReal wide_radius(const BasisInput *in, const BasisSites *sites, cons
 {
   const PetscInt dim = in->grid->dim;
   const PetscReal *x = point_real(sites->points, POINT_X, p);
-  PetscReal farthest2 = PetscSqr(in->spec->radius * in->grid->cloud->spacing);
+  PetscReal farthest2 = PetscSqr(in->spec->radius * cloud_spacing_of(sites->points, p, in->grid->cloud->spacing));
   for (PetscInt i = sites->now->node_start[p]; i < sites->now->node_start[p + 1]; ++i)
     farthest2 = PetscMax(farthest2, neighbours_square(dim, map, in->grid->x + sites->now->node[i] * dim, x));
   return sites->skin * PetscSqrtReal(farthest2);

@@ -1,6 +1,7 @@
 #!/bin/sh
 # A bar of gmm that is drawn out evenly to twice its length: force and energy are those of fem, which are exact, on any
 # number of ranks and resumed. With round clouds zigzags of the nodes grow from a stretch of 1.3 on until nothing bears.
+# And a plate whose cells grow away from a hole.
 . "$(dirname "$0")/library.sh"
 
 cat >case.yaml <<'END'
@@ -87,4 +88,42 @@ expect "fem in space" 0 "$talus" run case.yaml --out fem --quiet --set method=fe
 turn
 draw "lme in space"
 as_fem 1e-5
+
+# Cells from 0.02 to 0.2 m: clouds of one size held too few nodes where these are far apart, "nothing resists".
+cat >plate.geo <<'END'
+Point(1)={0,0,0};Point(2)={1,0,0};Point(3)={0.7071067811865476,0.7071067811865476,0};Point(4)={0,1,0};Point(5)={3,0,0};Point(6)={3,3,0};Point(7)={0,3,0};
+Circle(1)={2,1,3};Circle(2)={3,1,4};Line(3)={5,6};Line(4)={6,7};Line(5)={2,5};Line(6)={3,6};Line(7)={4,7};
+Curve Loop(1)={5,3,-6,-1};Curve Loop(2)={6,4,-7,-2};Plane Surface(1)={1};Plane Surface(2)={2};
+Transfinite Curve{1:4}=25;Transfinite Curve{5:7}=25 Using Progression 1.1;Transfinite Surface{1,2};Recombine Surface{1,2};
+Physical Surface("plate")={1,2};Physical Curve("right")={3};
+END
+cat >plate.yaml <<'END'
+kinematics: plane-strain
+method: gmm
+analysis: {type: static, steps: 1}
+grid: {mesh: plate.geo}
+bodies: [{name: plate, region: plate, points_per_cell: 4, material: steel}]
+materials: {steel: {law: neo-hookean, density: 8000, young: 1e9, poisson: 0.3}}
+boundary: [{on: {x: 0}, fix: [x]}, {on: {y: 0}, fix: [y]}]
+loads: {tractions: [{on: {boundary: right}, value: [1e3, 0]}]}
+measures: {side: {displacement: x, of: {tracer: [1, 0]}}, top: {displacement: y, of: {tracer: [0, 1]}}, stress: {stress: xx, of: {tracer: [0, 1.2]}}}
+END
+expect "plate, fem" 0 "$talus" run plate.yaml --out fem --force --quiet --set method=fem
+plate_as_fem() {
+  tail -q -n 1 fem/history.csv run/history.csv |
+    awk -F, 'NR == 1 { for (k = 3; k <= 5; ++k) F[k] = $k }
+      END { for (k = 3; k <= 5; ++k) bad += ($k / F[k] - 1) ^ 2 > 0.01 ^ 2; exit bad || NR < 2 }' ||
+    fail "$name: $(tail -n 1 run/history.csv)"
+}
+for ranks in 2 1; do
+  expect "plate, lme, $ranks" 0 on_ranks $ranks "$talus" run plate.yaml --out run --force --quiet
+  plate_as_fem
+done
+expect "plate, mls" 0 "$talus" run plate.yaml --out run --force --quiet --set 'basis={mls: {}}'
+plate_as_fem
+# What cannot come apart lacks no cohesion.
+expect "plate, small clouds" 1 "$talus" run plate.yaml --out run --force --quiet --set 'basis={lme: {radius: 0.5, max_radius: 0.5}}' \
+  --set loads=null --set 'boundary=[{on: {x: 0}, fix: [x]}, {on: {y: 0}, fix: [y]}, {on: {boundary: right}, displacement: {x: 1e-6}}]'
+says err.txt "nothing resists at" "points see too few nodes there"
+lacks err.txt "cohesion"
 finish

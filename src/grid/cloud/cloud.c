@@ -2,6 +2,10 @@
 #include "base/exchange.h"
 #include "grid/grid_ops.h"
 
+/* Up to so many times the mean spacing, or as much less, nodes count as equally far apart: those of cells that Gmsh
+ * made of one size. */
+#define ALIKE 1.3
+
 PetscErrorCode GridCloudFollow(const Grid *grid, CloudField field)
 {
   GridCloud *c = grid->cloud;
@@ -18,6 +22,7 @@ static PetscErrorCode Destroy(Grid *grid)
 
   PetscFunctionBeginUser;
   PetscCall(PetscFree((*cloud)->id));
+  PetscCall(PetscFree((*cloud)->around));
   PetscCall(PetscFree((*cloud)->x0));
   PetscCall(PetscFree((*cloud)->obstacle));
   PetscCall(PetscFree((*cloud)->motion));
@@ -28,20 +33,65 @@ static PetscErrorCode Destroy(Grid *grid)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode GridSpacing(const Grid *grid, PetscInt n, const PetscInt *cell, PetscReal *spacing)
+/* Of the square or cube that a cell is, half of which a triangle is and a sixth a tetrahedron. */
+static PetscReal block_volume(const Grid *grid, PetscInt cell)
 {
   static const PetscReal share[] = {2, 1, 6, 1}; /* cells to a square or a cube */
-  PetscReal x[3 * CELL_MAX_NODES], sum[2] = {0, (PetscReal)n};
+  PetscReal x[3 * CELL_MAX_NODES];
+  grid_cell_x(grid, cell, x);
+  return share[grid_cell_type(grid, cell)] * cell_volume(grid_cell_type(grid, cell), x);
+}
+
+PetscErrorCode GridSpacing(const Grid *grid, PetscInt n, const PetscInt *cell, PetscReal *spacing)
+{
+  PetscReal sum[2] = {0, (PetscReal)n};
 
   PetscFunctionBeginUser;
   *spacing = grid->smallest;
   if (grid_cells_alike(grid)) PetscFunctionReturn(0);
-  for (PetscInt k = 0; k < n; ++k) {
-    grid_cell_x(grid, cell[k], x);
-    sum[0] += share[grid_cell_type(grid, cell[k])] * cell_volume(grid_cell_type(grid, cell[k]), x);
-  }
+  for (PetscInt k = 0; k < n; ++k) sum[0] += block_volume(grid, cell[k]);
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, sum, 2, MPIU_REAL, MPI_SUM, grid->comm));
   if (sum[1] > 0) *spacing = PetscPowReal(sum[0] / sum[1], 1 / (PetscReal)grid->dim);
+  PetscFunctionReturn(0);
+}
+
+/* What counts as spacing where it is so many (as a logarithm) times the mean: the mean within ALIKE, what it is beyond
+ * the square of that, and between both without a step. Over the mean. */
+static PetscReal spacing_counted(PetscReal times)
+{
+  const PetscReal off = PetscAbsReal(times), counts = PetscMin(off, 2 * (off - PetscLogReal(ALIKE)));
+  if (counts <= 0) return 1;
+  return PetscExpReal(times > 0 ? counts : -counts);
+}
+
+PetscErrorCode GridSpacingAround(const Grid *mesh, PetscReal spacing, PetscReal **around)
+{
+  const PetscInt nn = mesh->nodes_per_cell;
+  PetscReal *sum;
+  PetscBool uneven = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  *around = NULL;
+  if (grid_cells_alike(mesh)) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(2 * mesh->n_nodes, &sum));
+  for (PetscInt k = 0; k < mesh->n_cells; ++k) {
+    const PetscReal times = PetscLogReal(block_volume(mesh, k)) / mesh->dim - PetscLogReal(spacing);
+    for (PetscInt I = 0; I < nn; ++I) {
+      sum[2 * mesh->cell_node[k * nn + I]] += times;
+      sum[2 * mesh->cell_node[k * nn + I] + 1] += 1;
+    }
+  }
+  PetscCall(GridSumToOwners(mesh, 2, sum));
+  PetscCall(GridToGhosts(mesh, 2, sum));
+  PetscCall(PetscMalloc1(mesh->n_nodes, around));
+  for (PetscInt i = 0; i < mesh->n_nodes; ++i) {
+    const PetscReal counts = sum[2 * i + 1] > 0 ? spacing_counted(sum[2 * i] / sum[2 * i + 1]) : 1;
+    (*around)[i] = counts * spacing;
+    if (counts != 1) uneven = PETSC_TRUE;
+  }
+  PetscCall(PetscFree(sum));
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &uneven, 1, MPIU_BOOL, MPI_LOR, mesh->comm));
+  if (!uneven) PetscCall(PetscFree(*around));
   PetscFunctionReturn(0);
 }
 
@@ -103,6 +153,7 @@ static void populate(const Grid *mesh, const CloudSource *source, Grid *g)
         if (k >= copies_of(source, i) || (second && !source->twin[i])) continue;
         c->id[n] = mesh->global_node[i] + k * all + (second ? c->first_twin : 0);
         c->obstacle[n] = source->marked[i] == CLOUD_OBSTACLE;
+        if (c->around) c->around[n] = source->around[i];
         if (c->motion) c->motion[n] = (PetscReal)(source->motion[i] < 0 ? k : source->motion[i]);
         for (PetscInt d = 0; d < dim; ++d) g->x[n * dim + d] = c->x0[n * dim + d] = mesh->x[i * dim + d];
         ++n;
@@ -110,7 +161,7 @@ static void populate(const Grid *mesh, const CloudSource *source, Grid *g)
 }
 
 /* Its arrays, and those that follow its nodes. */
-static PetscErrorCode Allocate(Grid *g)
+static PetscErrorCode Allocate(Grid *g, PetscBool uneven)
 {
   GridCloud *c = g->cloud;
 
@@ -123,9 +174,25 @@ static PetscErrorCode Allocate(Grid *g)
   PetscCall(GridCloudFollow(g, (CloudField){&g->x, g->dim, "position", "m", PETSC_FALSE}));
   PetscCall(GridCloudFollow(g, (CloudField){&c->x0, g->dim, "position_at_start", "m", PETSC_FALSE}));
   PetscCall(GridCloudFollow(g, (CloudField){&c->obstacle, 1, "obstacle", NULL, PETSC_FALSE}));
+  if (uneven) {
+    PetscCall(PetscMalloc1(g->n_nodes, &c->around));
+    PetscCall(GridCloudFollow(g, (CloudField){&c->around, 1, "spacing", "m", PETSC_FALSE}));
+  }
   if (c->n_motions == 1) PetscFunctionReturn(0);
   PetscCall(PetscMalloc1(g->n_nodes, &c->motion));
   PetscCall(GridCloudFollow(g, (CloudField){&c->motion, 1, "velocity_field", NULL, PETSC_FALSE}));
+  PetscFunctionReturn(0);
+}
+
+/* Collective. Of all nodes. */
+static PetscErrorCode FindWidest(Grid *g)
+{
+  GridCloud *c = g->cloud;
+
+  PetscFunctionBeginUser;
+  c->widest = c->spacing;
+  for (PetscInt i = 0; i < g->n_owned && c->around; ++i) c->widest = PetscMax(c->widest, c->around[i]);
+  PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &c->widest, 1, MPIU_REAL, MPIU_MAX, g->comm));
   PetscFunctionReturn(0);
 }
 
@@ -151,8 +218,9 @@ PetscErrorCode GridCreateCloud(const Grid *mesh, const CloudSource *source, Grid
   g->cloud->first_twin = source->n_motions * mesh->n_nodes_global;
   g->cloud->spacing = source->spacing;
   g->cloud->n_cells_left = mesh->n_cells_global;
-  PetscCall(Allocate(g));
+  PetscCall(Allocate(g, (PetscBool)(source->around != NULL)));
   populate(mesh, source, g);
+  PetscCall(FindWidest(g));
   PetscCall(CountOwned(g));
   PetscCall(Connect(g));
   *cloud = g;

@@ -25,6 +25,8 @@ typedef struct GridCloud {
   PetscInt *id;        /* n_nodes: for life, whatever the ranks */
   PetscInt first_twin; /* ids from here on are twins */
   PetscReal spacing;   /* of nodes in the body, at the start, m: unit of length of clouds */
+  PetscReal *around;   /* n_nodes: the same around each, where cells differ much in size; NULL: `spacing` everywhere */
+  PetscReal widest;    /* of these */
   PetscReal *x0;       /* n_nodes x dim: positions at the start, m */
   /* n_nodes: 1 if the node was prescribed at the start and no cell with material had it; else 0 */
   PetscReal *obstacle;
@@ -53,7 +55,8 @@ typedef struct {
 
 /* What of a mesh becomes a cloud, for each of its owned nodes. */
 typedef struct {
-  PetscReal spacing;           /* of the cloud */
+  PetscReal spacing;           /* of the cloud, */
+  const PetscReal *around;     /* and around each node of the mesh; NULL: the same everywhere */
   const unsigned char *marked; /* CLOUD_BODY, or CLOUD_OBSTACLE; 0: it is left out */
   /* It gets a twin: a second node at the same place that carries the multipliers of a constraint and never is a
    * neighbour. */
@@ -66,6 +69,9 @@ typedef struct {
  * listed): the edge of a square or cube of their mean volume, of which a triangle is half and a
  * tetrahedron a sixth; on a box of equal cells its cell size. */
 PetscErrorCode GridSpacing(const Grid *mesh, PetscInt n, const PetscInt *cell, PetscReal *spacing);
+/* Collective. The same around each local node of the mesh, where cells differ much in size: *around is NULL where they
+ * do not, and whoever asks frees it. */
+PetscErrorCode GridSpacingAround(const Grid *mesh, PetscReal spacing, PetscReal **around);
 /* Collective. The cloud of the owned nodes of a mesh that are marked. */
 PetscErrorCode GridCreateCloud(const Grid *mesh, const CloudSource *source, Grid **cloud);
 
@@ -81,6 +87,12 @@ static inline PetscInt cloud_origin(const Grid *grid, const Grid *mesh, PetscInt
 static inline PetscInt cloud_motion(const Grid *grid, PetscInt node)
 {
   return grid->cloud->motion ? (PetscInt)grid->cloud->motion[node] : 0;
+}
+
+/* Spacing of nodes around a node at the start, m. */
+static inline PetscReal cloud_spacing_around(const Grid *grid, PetscInt node)
+{
+  return grid->cloud->around ? grid->cloud->around[node] : grid->cloud->spacing;
 }
 
 /* Where a node was at the start; an obstacle is MATTER_ANYWHERE. */

@@ -4,6 +4,7 @@
 #include "method/gmm/gmm.h"
 #include "method/transfer/mass.h"
 #include "method/transfer/transfer.h"
+#include "support/cloud.h"
 
 #define KEEP_OFF 0.25 /* spacings between nodes, at least */
 
@@ -45,7 +46,7 @@ static PetscBool needs_no_mass(const Discretisation *s, PetscInt node)
 static PetscReal starved(const Discretisation *s, PetscInt node, PetscReal density)
 {
   const PetscInt dim = s->grid->dim;
-  const PetscReal h = s->grid->cloud->spacing, corner = dim == 3 ? h * h * h / 16 : h * h / 8;
+  const PetscReal h = cloud_spacing_around(s->grid, node), corner = dim == 3 ? h * h * h / 16 : h * h / 8;
   const PetscReal round = kinematics_weight(s->c->kinematics, PetscMax(s->grid->x[node * dim], h / 3));
   if (needs_no_mass(s, node)) return 0;
   return PetscMax(0, 1 - PetscMax(0, s->nodes->mass[node]) / (density * corner * round));
@@ -57,7 +58,6 @@ static PetscReal starved(const Discretisation *s, PetscInt node, PetscReal densi
 static PetscErrorCode Stabilise(Discretisation *s)
 {
   const Support *w = s->support;
-  const PetscReal h = s->grid->cloud->spacing, length = s->grid->dim == 3 ? h : 1;
 
   PetscFunctionBeginUser;
   if (w->n_groups > s->group_capacity) {
@@ -69,6 +69,7 @@ static PetscErrorCode Stabilise(Discretisation *s)
   }
   for (PetscInt p = 0; p < w->n_groups; ++p) {
     const Material *material = &s->materials[s->points->material[p]];
+    const PetscReal h = cloud_spacing_of(s->points, p, s->grid->cloud->spacing), length = s->grid->dim == 3 ? h : 1;
     PetscReal lack = 0;
     for (PetscInt i = w->node_start[p]; i < w->node_start[p + 1]; ++i)
       lack = PetscMax(lack, starved(s, w->node[i], material->density));
@@ -122,8 +123,9 @@ static void keep_off(const Discretisation *s, PetscInt n, const PetscInt *node, 
                      PetscReal *x)
 {
   const PetscInt dim = s->grid->dim;
-  const PetscReal least = KEEP_OFF * s->grid->cloud->spacing;
   for (PetscInt e = 0; e < n; ++e) {
+    const PetscReal least =
+      KEEP_OFF * PetscMin(cloud_spacing_around(s->grid, self), cloud_spacing_around(s->grid, node[e]));
     const PetscReal *other = old + node[e] * dim;
     PetscReal square = 0;
     for (PetscInt d = 0; d < dim; ++d) square += PetscSqr(x[d] - other[d]);

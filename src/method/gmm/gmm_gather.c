@@ -19,8 +19,14 @@ typedef struct {
   PetscReal *start;  /* per node: as cloud_start() */
 } Search;
 
-/* The radius aimed at, m. */
+/* The radius aimed at where nodes are as far apart as in the mean, m. */
 static PetscReal radius_of(const Discretisation *s) { return s->c->basis.radius * s->grid->cloud->spacing; }
+
+/* The same for a point. */
+static PetscReal radius_at(const Discretisation *s, const Points *points, PetscInt p)
+{
+  return s->c->basis.radius * cloud_spacing_of(points, p, s->grid->cloud->spacing);
+}
 
 /* What yields flows before its stress could make clouds uneven, and its F need not tell neighbours; the thesis's clouds
  * stay as they are. */
@@ -38,12 +44,20 @@ static void widen_box(PetscInt dim, PetscInt n, const PetscReal *x, PetscReal re
     }
 }
 
-/* Points in material that is drawn out look farther. */
-static void widen_for_points(PetscBool follows, const Points *points, PetscReal reach, PetscReal box[6])
+/* In spacings around a point how far it may look for nodes. */
+static PetscReal farthest_of(const Discretisation *s)
 {
+  return SKIN * PetscMax(s->c->basis.radius, s->c->basis.max_radius);
+}
+
+/* Points in material that is drawn out look farther. */
+static void widen_for_points(const Discretisation *s, const Points *points, PetscReal box[6])
+{
+  const PetscBool follows = clouds_follow(s);
   NeighboursMap room;
   for (PetscInt p = 0; p < points->n; ++p) {
     const NeighboursMap *map = cloud_stretch_of(follows, points, p, &room);
+    const PetscReal reach = farthest_of(s) * cloud_spacing_of(points, p, s->grid->cloud->spacing);
     widen_box(points->dim, 1, point_real(points, POINT_X, p), (map ? map->longest : 1) * reach, box);
   }
 }
@@ -52,13 +66,12 @@ static void widen_for_points(PetscBool follows, const Points *points, PetscReal 
 static void search_box(const Discretisation *s, const MeetingPlaces *meeting, PetscReal box[6])
 {
   const PetscInt dim = s->grid->dim;
-  const PetscReal reach = SKIN * PetscMax(radius_of(s), s->c->basis.max_radius * s->grid->cloud->spacing);
-  const PetscBool follows = clouds_follow(s);
   for (int d = 0; d < 3; ++d) box[d] = PETSC_MAX_REAL, box[3 + d] = -PETSC_MAX_REAL;
-  widen_for_points(follows, s->points, reach, box);
-  widen_for_points(follows, s->tracers, reach, box);
-  widen_for_points(follows, s->loads->carriers, reach, box);
-  widen_box(dim, s->grid->n_owned, s->grid->x, reach, box);
+  widen_for_points(s, s->points, box);
+  widen_for_points(s, s->tracers, box);
+  widen_for_points(s, s->loads->carriers, box);
+  for (PetscInt i = 0; i < s->grid->n_owned; ++i)
+    widen_box(dim, 1, s->grid->x + i * dim, farthest_of(s) * cloud_spacing_around(s->grid, i), box);
   widen_box(dim, meeting->n, meeting->x, SKIN * meeting_reach(s), box);
 }
 
@@ -163,7 +176,6 @@ static Lists lists_of(const Discretisation *s)
 static PetscErrorCode Relayout(Discretisation *s, Search *search)
 {
   const PetscInt dim = s->grid->dim, n_owned = s->grid->n_owned;
-  const PetscReal radius = SKIN * radius_of(s);
   const PetscBool follows = clouds_follow(s);
   PetscInt near[CLOUD_MAX_NODES];
   PetscReal distance2[CLOUD_MAX_NODES];
@@ -171,9 +183,9 @@ static PetscErrorCode Relayout(Discretisation *s, Search *search)
 
   PetscFunctionBeginUser;
   for (PetscInt p = 0; p < s->points->n; ++p) {
-    const PetscInt n =
-      neighbours_mapped(search->nodes + point_field(s->points, p), cloud_stretch_of(follows, s->points, p, &room),
-                        s->points->real[POINT_X] + p * dim, radius, CLOUD_MAX_NODES, near, distance2);
+    const PetscInt n = neighbours_mapped(
+      search->nodes + point_field(s->points, p), cloud_stretch_of(follows, s->points, p, &room),
+      s->points->real[POINT_X] + p * dim, SKIN * radius_at(s, s->points, p), CLOUD_MAX_NODES, near, distance2);
     mark_used(s, search, n, near);
   }
   PetscCall(MeetingPlacesUse(&search->meeting, s, SKIN * meeting_reach(s), &search->remote, search->use));
@@ -221,6 +233,10 @@ static PetscErrorCode PlacesCreate(const Grid *grid, PetscInt n, Points *places)
   *places = (Points){.dim = grid->dim, .components[POINT_X] = grid->dim, .components[POINT_U] = grid->dim};
   PetscCall(PetscMalloc1(n * grid->dim, &places->real[POINT_X]));
   PetscCall(PetscMalloc1(n * grid->dim, &places->real[POINT_U]));
+  if (grid->cloud->around) {
+    places->components[POINT_SPACING] = 1;
+    PetscCall(PetscMalloc1(n, &places->real[POINT_SPACING]));
+  }
   if (grid->cloud->n_motions == 1) PetscFunctionReturn(0);
   places->components[POINT_FIELD] = 1;
   PetscCall(PetscMalloc1(n, &places->real[POINT_FIELD]));
@@ -234,6 +250,7 @@ static void add_place(const Grid *grid, PetscInt node, Points *places)
     point_real(places, POINT_X, n)[d] = grid->x[node * grid->dim + d];
     point_real(places, POINT_U, n)[d] = grid->x[node * grid->dim + d] - cloud_start(grid, node, d);
   }
+  if (grid->cloud->around) places->real[POINT_SPACING][n] = grid->cloud->around[node];
   if (places->components[POINT_FIELD]) places->real[POINT_FIELD][n] = (PetscReal)cloud_motion(grid, node);
 }
 
@@ -242,6 +259,7 @@ static PetscErrorCode PlacesDestroy(Points *places)
   PetscFunctionBeginUser;
   PetscCall(PetscFree(places->real[POINT_X]));
   PetscCall(PetscFree(places->real[POINT_U]));
+  PetscCall(PetscFree(places->real[POINT_SPACING]));
   PetscCall(PetscFree(places->real[POINT_FIELD]));
   PetscFunctionReturn(0);
 }

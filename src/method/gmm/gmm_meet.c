@@ -6,7 +6,7 @@
 PetscReal meeting_reach(const Discretisation *s)
 {
   const PetscReal farthest = PetscMax(s->c->basis.radius, s->c->basis.max_radius);
-  return SURFACE_SEARCH * s->grid->smallest + farthest * s->grid->cloud->spacing;
+  return SURFACE_SEARCH * s->grid->smallest + farthest * s->grid->cloud->widest;
 }
 
 static PetscBool may_meet(const Discretisation *s, PetscInt p, PetscInt k, const PetscReal *bounds)

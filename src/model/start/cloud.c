@@ -95,12 +95,32 @@ static PetscErrorCode StandInMatter(const Model *m, Points *followers)
   PetscFunctionReturn(0);
 }
 
+/* What of nodes is around a point where it begins. A follower beside all cells goes by the mean. */
+static PetscErrorCode TakeSpacing(const Grid *mesh, const PetscReal *around, Points *points)
+{
+  const PetscInt nn = mesh->nodes_per_cell;
+  PetscReal N[CELL_MAX_NODES], dN[3 * CELL_MAX_NODES];
+
+  PetscFunctionBeginUser;
+  points->components[POINT_SPACING] = 1;
+  PetscCall(PetscMalloc1(points->capacity, &points->real[POINT_SPACING]));
+  for (PetscInt p = 0; p < points->n; ++p) {
+    PetscReal *spacing = point_real(points, POINT_SPACING, p);
+    *spacing = 0;
+    if (points->cell[p] < 0) continue;
+    cell_shape(grid_cell_type(mesh, points->cell[p]), point_real(points, POINT_XI, p), N, dN);
+    for (PetscInt I = 0; I < nn; ++I) *spacing += N[I] * around[mesh->cell_node[points->cell[p] * nn + I]];
+  }
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ModelToCloud(Model *m)
 {
   Grid *cloud;
   Boundary *boundary;
   unsigned char *marked, *twin;
   PetscInt *field = NULL;
+  PetscReal *around;
   CloudSource source = {.n_motions = case_fields(m->c)};
 
   PetscFunctionBeginUser;
@@ -115,6 +135,13 @@ PetscErrorCode ModelToCloud(Model *m)
   }
   source.marked = marked, source.twin = twin, source.motion = field;
   PetscCall(GridSpacing(m->grid, m->points->n, m->points->cell, &source.spacing));
+  PetscCall(GridSpacingAround(m->grid, source.spacing, &around));
+  source.around = around;
+  if (around) {
+    PetscCall(TakeSpacing(m->grid, around, m->points));
+    PetscCall(TakeSpacing(m->grid, around, m->tracers));
+    PetscCall(TakeSpacing(m->grid, around, m->loads->carriers));
+  }
   PetscCall(GridCreateCloud(m->grid, &source, &cloud));
   PetscCall(BoundaryToCloud(m->boundary, m->grid, cloud, &boundary));
   PetscCall(CloudMatterCreate(m->grid, source.spacing, source.n_motions, m->points->n, m->points->cell,
@@ -126,6 +153,7 @@ PetscErrorCode ModelToCloud(Model *m)
   leave_cells(m->grid, m->loads->carriers);
   PetscCall(PetscFree2(marked, twin));
   PetscCall(PetscFree(field));
+  PetscCall(PetscFree(around));
   PetscCall(BoundaryDestroy(&m->boundary));
   PetscCall(GridDestroy(&m->grid));
   m->boundary = boundary;

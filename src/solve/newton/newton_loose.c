@@ -98,6 +98,34 @@ static const char *what_it_lacks(const Case *c, PetscInt body)
   return "some cohesion";
 }
 
+/* May its material come apart? Of a cloud whose material may not, what is loose is the cloud. */
+static PetscBool may_come_apart(const StepProblem *p, PetscInt body)
+{
+  const Case *c = p->scene.c;
+  for (PetscInt k = 0; k < c->n_materials && p->grid->cloud; ++k)
+    if (!strcmp(c->materials[k].name, c->bodies[body].material)) return p->in.materials[k].law->yields;
+  return PETSC_TRUE;
+}
+
+/* Loose: so many nodes, around a point of a body. */
+static void tell_loose(Newton *n, const PetscInt loose[2], PetscInt body, const PetscReal x[3])
+{
+  const Case *c = n->problem->scene.c;
+  char place[PLACE];
+  if (may_come_apart(n->problem, body))
+    snprintf(n->loose, sizeof n->loose,
+             "nothing resists at %d of %d nodes, as around %s m in '%s': it has no stiffness there, as grains that are "
+             "apart; hold it together, give it %s, or let it move (type: dynamic)",
+             (int)loose[0], (int)loose[1], place_text(n, x, place), c->bodies[body].name, what_it_lacks(c, body));
+  else
+    snprintf(
+      n->loose, sizeof n->loose,
+      "nothing resists at %d of %d nodes, as around %s m in '%s': points see too few nodes there, or none to one "
+      "side, as in cells much longer than wide; take cells of one shape, a larger `max_radius` of the basis, or "
+      "method fem",
+      (int)loose[0], (int)loose[1], place_text(n, x, place), c->bodies[body].name);
+}
+
 PetscErrorCode NewtonLooseReason(Newton *n, const char **reason)
 {
   const StepProblem *p = n->problem;
@@ -105,7 +133,6 @@ PetscErrorCode NewtonLooseReason(Newton *n, const char **reason)
   PetscInt counts[2] = {0, p->system->n_active}, all[2], body;
   unsigned char *loose;
   PetscBool found = PETSC_FALSE;
-  char place[PLACE];
 
   PetscFunctionBeginUser;
   *reason = NULL;
@@ -118,11 +145,7 @@ PetscErrorCode NewtonLooseReason(Newton *n, const char **reason)
   if (all[0]) PetscCall(FindPoint(n, loose, &body, x, &found));
   PetscCall(PetscFree2(diagonal, loose));
   if (!found) PetscFunctionReturn(0);
-  snprintf(n->loose, sizeof n->loose,
-           "nothing resists at %d of %d nodes, as around %s m in '%s': it has no stiffness there, as grains that are "
-           "apart; hold it together, give it %s, or let it move (type: dynamic)",
-           (int)all[0], (int)all[1], place_text(n, x, place), p->scene.c->bodies[body].name,
-           what_it_lacks(p->scene.c, body));
+  tell_loose(n, all, body, x);
   *reason = n->loose;
   PetscFunctionReturn(0);
 }
