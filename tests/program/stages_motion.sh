@@ -690,4 +690,30 @@ for run in first again; do
   awk -F, 'END { exit ($NF + 2000) ^ 2 > 1e-6 }' $run/history.csv || fail "$name: $(tail -n 1 $run/history.csv)"
   cp first/case.yaml blows.yaml
 done
+# A boundary that a stage brings with an acceleration has from its first step on the forces that it has where a run begins
+# with it, whatever the scheme remembers; and one that goes on does not begin anew.
+cat >given.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: dynamic, end: 0.01, step: 0.001, bossak: -0.3}
+grid: {box: {min: [0.2, 0.1], max: [1, 0.5]}, size: 0.1}
+bodies: [{name: b, shape: {box: {min: [0.2, 0.1], max: [1, 0.5]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e5, poisson: 0.3}}
+boundary: [{name: w, on: {x: 0.2}, velocity: {x: 1}, amplitude: [[0, 0], [0.03, 0.3]]}]
+measures: {F: {reaction: x, of: {boundary: w}}, K: {energy: kinetic}}
+output: {every: end}
+END
+sed '/^boundary/s/name: w, /&absent: true, /; /^measures/d' given.yaml >brought.yaml
+echo "stages: [{name: waits, analysis: {end: 0.02}}, {name: goes, analysis: {end: 0.01}, $(sed -n '/^measures/p' given.yaml), $(sed -n '/^boundary/p' given.yaml)}]" >>brought.yaml
+sed '/^boundary/s/absent: true, //; /^boundary/s/x: 1/x: 0/' brought.yaml >told.yaml
+for case in 'brought fem -0.3' 'brought fem -0.1' 'brought fem 0' 'brought mpm -0.3' 'told fem -0.3' 'told mpm -0.1'; do
+  set -- $case
+  turn
+  expect "given, $2 with $3" 0 "$talus" run given.yaml --out given --force --quiet --set method=$2 --set analysis.bossak=$3
+  expect "$case, on $ranks" 0 on_ranks $ranks "$talus" run $1.yaml --out stage --force --quiet --set method=$2 --set analysis.bossak=$3
+  awk -F, '$3 == 2 { print $4 "," $5 }' stage/history.csv >is.txt
+  sed '1,2d' given/history.csv | cut -d, -f3,4 | paste -d, is.txt - |
+    awk -F, '{ n += 1; if (($1 / $3 - 1) ^ 2 > 1e-14 || ($2 / $4 - 1) ^ 2 > 1e-14) exit 1 } END { exit n != 10 }' || fail "$name: $(paste is.txt given/history.csv)"
+done
+
 finish

@@ -6,6 +6,7 @@
 #include "model/stage/stage_private.h"
 
 #define SAME 1e-9 /* of what acts: beyond it all is round-off, and nothing jumps */
+#define TOLD 1e-2 /* of an acceleration that held nodes are told: less comes of another step to read it by */
 
 PetscBool accelerations_go_on(const Case *c, const Case *from)
 {
@@ -15,16 +16,22 @@ PetscBool accelerations_go_on(const Case *c, const Case *from)
   return (PetscBool)(c->release <= 0); /* else what is new comes bit by bit */
 }
 
-/* Of each node its acceleration, and what it lacks where it is held. */
+/* Of each node its acceleration, what it lacks where it is held, and what it is told to have there. */
+enum { BALANCED, LACKS, IS_TOLD, PARTS };
+
 static NodalField field_of(const Model *m)
 {
-  return (NodalField){.name = "acceleration_lack", .unit = "m/s2, N", .components = 2 * m->dim, .values = m->balanced};
+  return (NodalField){
+    .name = "acceleration_lack", .unit = "m/s2, N", .components = PARTS * m->dim, .values = m->balanced};
 }
+
+/* Where in such a field dof i is. */
+static PetscInt place_of(PetscInt dim, int part, PetscInt i) { return (i / dim * PARTS + part) * dim + i % dim; }
 
 PetscErrorCode JumpExpect(Model *m)
 {
   PetscFunctionBeginUser;
-  PetscCall(PetscCalloc1(PetscMax(1, 2 * m->grid->n_nodes * m->dim), &m->balanced));
+  PetscCall(PetscCalloc1(PetscMax(1, PARTS * m->grid->n_nodes * m->dim), &m->balanced));
   if (!m->method->clouds) PetscFunctionReturn(0);
   const NodalField field = field_of(m);
   PetscCall(GridCloudFollow(m->grid, (CloudField){&m->balanced, field.components, field.name, field.unit, PETSC_TRUE}));
@@ -55,20 +62,44 @@ static PetscErrorCode LookAlone(Model *m, PetscBool alone)
   PetscFunctionReturn(0);
 }
 
-/* Components of both, node by node. */
-static PetscErrorCode Find(Model *m, PetscReal *both, PetscReal *size)
+/* Over which what is told is looked at, s. */
+static PetscReal look_of(const Model *m) { return m->c->analysis.step > 0 ? m->c->analysis.step : m->control.next; }
+
+/* Of all dofs their acceleration, and of held ones that which they are told for what follows, whatever they have: one
+ * look of the same length before and after, by which nothing jumps that goes on. */
+static PetscErrorCode Told(const Model *m, PetscReal *told)
 {
-  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
-  PetscReal *a, *lacks;
+  const PetscInt dofs = m->grid->n_nodes * m->dim;
+  PetscReal *v, *given;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc2(dofs, &a, dofs, &lacks));
+  PetscCall(PetscMalloc2(dofs, &v, dofs, &given));
+  PetscCall(PrescribedStart(m, look_of(m), v, given));
+  PetscCall(PetscArraycpy(told, m->nodes->a, dofs));
+  frames_turn(&m->boundary->frames, m->dim, told);
+  for (PetscInt i = 0; i < dofs; ++i)
+    if (m->boundary->fixed[i]) told[i] = given[i];
+  frames_turn(&m->boundary->frames, m->dim, told);
+  PetscCall(PetscFree2(v, given));
+  PetscFunctionReturn(0);
+}
+
+/* Node by node. */
+static PetscErrorCode Find(Model *m, PetscReal *all, PetscReal *size)
+{
+  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
+  PetscReal *a, *lacks, *told;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc3(dofs, &a, dofs, &lacks, dofs, &told));
+  PetscCall(Told(m, told));
   PetscCall(BalancedAcceleration(m, a, lacks, size));
   for (PetscInt i = 0; i < dofs; ++i) {
-    both[2 * i - i % dim] = a[i];
-    both[2 * i - i % dim + dim] = lacks[i];
+    all[place_of(dim, BALANCED, i)] = a[i];
+    all[place_of(dim, LACKS, i)] = lacks[i];
+    all[place_of(dim, IS_TOLD, i)] = told[i];
   }
-  PetscCall(PetscFree2(a, lacks));
+  PetscCall(PetscFree3(a, lacks, told));
   PetscFunctionReturn(0);
 }
 
@@ -102,13 +133,47 @@ static PetscErrorCode ComeAlong(Model *m, const Case *from)
     comes[b] = (PetscBool)(!m->c->bodies[b].absent && body_comes(m->c, from, b));
     any |= comes[b];
   }
-  for (PetscInt i = 0; i < dofs; ++i) a[i] = m->balanced[2 * i - i % dim];
+  for (PetscInt i = 0; i < dofs; ++i) a[i] = m->balanced[place_of(dim, BALANCED, i)];
   if (any) {
     accelerate_points(m, comes, a);
     m->space->present = PETSC_FALSE;
     PetscCall(ModelInitialise(m));
   }
   PetscCall(PetscFree2(comes, a));
+  PetscFunctionReturn(0);
+}
+
+/* Do these differ by more than a look over other clocks does, of a node that moves by v? */
+static PetscBool is_other(const Model *m, PetscReal now, PetscReal before, const PetscReal *v)
+{
+  const PetscReal larger = PetscMax(PetscAbsReal(now), PetscAbsReal(before));
+  PetscReal speed = 0;
+  for (PetscInt d = 0; d < m->dim; ++d) speed += PetscAbsReal(v[d]);
+  return (PetscBool)(PetscAbsReal(now - before) > PetscMax(TOLD * larger, SAME * speed / look_of(m)));
+}
+
+/* Nodes of a mesh that are held from now on, or told another motion, have its acceleration at once: Newmark's formulas
+ * would swing about it, and with them forces of a scheme that does not weigh two steps alike, as Bossak's. A grid that
+ * is restored and constraints of a cloud have it in each step (prepare.c). */
+static PetscErrorCode TakeTold(Model *m)
+{
+  const Frames *frames = &m->boundary->frames;
+  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
+  PetscReal *now, *before, *a = m->nodes->a;
+
+  PetscFunctionBeginUser;
+  if (m->method->restores_grid || m->method->clouds) PetscFunctionReturn(0);
+  PetscCall(PetscMalloc2(dofs, &now, dofs, &before));
+  PetscCall(Told(m, now));
+  for (PetscInt i = 0; i < dofs; ++i) before[i] = m->balanced[place_of(dim, IS_TOLD, i)];
+  frames_turn(frames, dim, now);
+  frames_turn(frames, dim, before);
+  frames_turn(frames, dim, a);
+  for (PetscInt i = 0; i < dofs; ++i)
+    if (m->boundary->fixed[i] && is_other(m, now[i], before[i], m->nodes->v + i / dim * dim))
+      a[i] += now[i] - before[i];
+  frames_turn(frames, dim, a);
+  PetscCall(PetscFree2(now, before));
   PetscFunctionReturn(0);
 }
 
@@ -147,7 +212,7 @@ static PetscErrorCode Add(Model *m, const PetscReal *a, const PetscReal *lacks)
 }
 
 /* From the difference of both, node by node; held dofs have the acceleration that they are given. */
-static PetscErrorCode Jump(Model *m, const PetscReal *both, PetscReal size)
+static PetscErrorCode Jump(Model *m, const PetscReal *all, PetscReal size)
 {
   const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
   PetscReal *a, *lacks;
@@ -156,8 +221,8 @@ static PetscErrorCode Jump(Model *m, const PetscReal *both, PetscReal size)
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(dofs, &a, dofs, &lacks));
   for (PetscInt i = 0; i < dofs; ++i) {
-    a[i] = both[2 * i - i % dim];
-    lacks[i] = both[2 * i - i % dim + dim];
+    a[i] = all[place_of(dim, BALANCED, i)];
+    lacks[i] = all[place_of(dim, LACKS, i)];
   }
   keep_free(m, a);
   frames_turn(&m->boundary->frames, dim, lacks);
@@ -173,8 +238,8 @@ static PetscErrorCode Jump(Model *m, const PetscReal *both, PetscReal size)
 
 PetscErrorCode JumpTo(Model *m, const Case *from, const Tables *tables, char reason[256])
 {
-  const PetscInt n = m->grid->n_nodes * 2 * m->dim;
-  PetscReal *both, size;
+  const PetscInt n = m->grid->n_nodes * PARTS * m->dim;
+  PetscReal *all, size;
 
   PetscFunctionBeginUser;
   if (!m->method->clouds) {
@@ -183,12 +248,13 @@ PetscErrorCode JumpTo(Model *m, const Case *from, const Tables *tables, char rea
   }
   PetscCall(LookAlone(m, PETSC_TRUE));
   PetscCall(ComeAlong(m, from));
-  PetscCall(PetscMalloc1(n, &both));
-  PetscCall(Find(m, both, &size));
-  for (PetscInt i = 0; i < n; ++i) both[i] -= m->balanced[i];
-  if (!reason[0]) PetscCall(Jump(m, both, size));
+  PetscCall(TakeTold(m));
+  PetscCall(PetscMalloc1(n, &all));
+  PetscCall(Find(m, all, &size));
+  for (PetscInt i = 0; i < n; ++i) all[i] -= m->balanced[i];
+  if (!reason[0]) PetscCall(Jump(m, all, size));
   PetscCall(LookAlone(m, PETSC_FALSE));
-  PetscCall(PetscFree(both));
+  PetscCall(PetscFree(all));
   PetscCall(Forget(m));
   PetscFunctionReturn(0);
 }
