@@ -297,7 +297,7 @@ ContactWork contact_work(const Model *model, PetscReal dt);
 /* Collective, before the step is committed: mean forces of the step, and what is remembered. */
 PetscErrorCode ContactForces(Model *model, PetscReal dt);
 /* Collective. After the points' strain was committed: what measures ask of each wall. */
-PetscErrorCode ContactSurvey(Model *model);
+PetscErrorCode ContactSurvey(Model *model, PetscReal dt);
 /* Collective. The same of the state that a first step begins with; contact points have its forces. */
 PetscErrorCode ContactStand(Model *model);
 

@@ -153,4 +153,43 @@ for basis in '{mls: {}}' '{mls: {essential: direct}}' '{lme: {essential: constra
   awk -F, 'END { exit !($3 > 100 && $4 * $4 < (0.025 * $3) ^ 2) }' shaken/history.csv || fail "$name: $(tail -n 1 shaken/history.csv)"
 done
 
+# A drum that turns about its own centre works by its torque alone: a smooth one under a shoe not at all, and one that
+# rubs by its torque times its angle; nothing of that is lost. The same of statics and of substeps.
+cat >drum.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, steps: 20}
+grid: {box: {min: [-0.5, 0.8], max: [0.5, 1.6]}, size: 0.1}
+bodies: [{name: shoe, shape: {box: {min: [-0.4, 1], max: [0.4, 1.4]}}, points_per_cell: 4, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0}}
+boundary: [{name: hold, on: {y: [1.31, 2]}, displacement: {x: 0, y: -0.02}, amplitude: [[0, 0], [0.2, 1], [1, 1]]}]
+walls: [{name: drum, shape: {circle: {centre: [0, 0], radius: 1}}, motion: [{rotation: {centre: [0, 0], rate: 3}, amplitude: [[0, 0], [0.2, 0], [0.25, 1], [1, 1]]}]}]
+measures: {torque: {wall_torque: z, of: {wall: drum}}, came: {energy: external}, friction: {energy: friction}, transfer: {energy: transfer}, balance: {energy: balance}}
+output: {every: end}
+END
+for method in fem mpm gmm; do
+  turn
+  expect "a smooth drum, $method on $ranks" 0 on_ranks $ranks "$talus" run drum.yaml --out smooth --force --quiet --set method=$method
+  lacks err.txt "the transfer to what stops"
+  awk -F, 'NR > 1 && $1 < 0.201 { pressed = $4 } END { exit !(($4 / pressed - 1) ^ 2 < 1e-6 && $6 ^ 2 < (0.02 * pressed) ^ 2) }' smooth/history.csv || fail "$name: $(tail -n 1 smooth/history.csv)"
+  expect "a drum that rubs, $method on $ranks" 0 on_ranks $ranks "$talus" run drum.yaml --out rubs --force --quiet --set method=$method --set walls[0].friction=0.3
+  awk -F, 'NR > 1 && $1 > 0.5 { if (t) { came += $4 - c; rubbed += $5 - r; angle += 3 * ($1 - t) } t = $1; c = $4; r = $5 }
+    END { exit !(angle > 1 && (came / angle / $3 - 1) ^ 2 < 1e-5 && (rubbed / came - 1) ^ 2 < 1e-6 && $6 ^ 2 < (1e-3 * $4) ^ 2 && $7 ^ 2 < 1e-16) }' rubs/history.csv || fail "$name: $(tail -n 1 rubs/history.csv)"
+done
+cat >round.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: explicit, end: 0.3, step: 0.005}
+grid: {box: {min: [-1.27, -1.23], max: [1.33, 1.27]}, size: 0.1}
+bodies: [{name: b, shape: {box: {min: [-0.15, -0.988686], max: [0.15, -0.788686]}}, material: m, spin: 3}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+walls: [{name: w, shape: {circle: {centre: [0, 0], radius: 1}}, inside: true, motion: [{rotation: {centre: [0, 0], rate: 5}}]}]
+measures: {came: {energy: external}, transfer: {energy: transfer}}
+output: {every: end}
+END
+turn
+expect "a smooth drum, explicit on $ranks" 0 on_ranks $ranks "$talus" run round.yaml --out turns --force --quiet
+expect "and one that stands" 0 "$talus" run round.yaml --out stands --force --quiet --set 'walls[0].motion=[]'
+awk -F, -v stands="$(tail -n 1 stands/history.csv | cut -d, -f4)" 'END { exit !($3 ^ 2 < 0.02 ^ 2 && ($4 - stands) ^ 2 < 0.02 ^ 2) }' turns/history.csv || fail "$name: $(tail -n 1 turns/history.csv)"
+
 finish

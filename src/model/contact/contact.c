@@ -1,4 +1,5 @@
 /* Walls and interfaces in a step: what they do to motion, momentum and energy. */
+#include "base/math/vector.h"
 #include "model/model_private.h"
 
 #define BRIEF 0.1 /* of the step that is wanted: shorter ones are those that outputs and changes cut off */
@@ -246,55 +247,60 @@ PetscErrorCode ContactEnd(Model *m, PetscReal dt, EnergyStep *energy)
   PetscFunctionReturn(0);
 }
 
-/* What the wall moves by where the material is in the middle of its way to x: along that the mean force does what its
- * torque does. */
+/* How often `passing` looks for the matter that it asks: each look leaves half the wall's turn of what the last one was
+ * off by. */
+#define LOOKS 4
+
+/* The way of the wall's matter that has its middle where that of the material to x has it: along that a force does what
+ * its torque does. Of what sticks it is its own. A way that began where the material does would lead into what turns,
+ * by half of its turn, and a smooth drum would work against what it carries (docs/theory.md, section 88). */
 static void passing(const Model *m, const ContactPoint *c, PetscReal dt, const PetscReal x[3], PetscReal passes[3])
 {
   const Contact *s = m->contact;
   PetscReal start[3];
-  for (int d = 0; d < 3; ++d) {
-    passes[d] = c->passes[d];
-    start[d] = 0.5 * (c->x[d] + x[d] - c->swept[d]);
+  for (int d = 0; d < 3; ++d) passes[d] = c->swept[d];
+  if (c->wall >= s->n_walls || contact_rigid(s, c)) return;
+  for (int look = 0; look < LOOKS; ++look) {
+    for (int d = 0; d < 3; ++d) start[d] = 0.5 * (c->x[d] + x[d] - passes[d]);
+    wall_motion(s->walls, c->wall, m->time, m->time + dt, start, passes);
   }
-  if (!m->scheme->inertia || c->wall >= s->n_walls || contact_rigid(s, c)) return;
-  wall_motion(s->walls, c->wall, m->time, m->time + dt, start, passes);
 }
 
 /* What of the way of a wall that goes as it is told does no work: that by which it passes held nodes, where the
  * boundary bears its force. Along a wall that rubs they slide. */
-static void idling(const Model *m, const ContactPoint *c, PetscReal idle[3])
+static void idling(const Model *m, const ContactPoint *c, const PetscReal passes[3], PetscReal idle[3])
 {
   const PetscBool told = (PetscBool)!contact_rigid(m->contact, c);
-  for (int d = 0; d < 3; ++d)
-    idle[d] = !told ? 0 : rubs(c->law.kind) ? (c->passed - c->behind) * c->facing[d] : c->let[d];
+  PetscReal let[3];
+  const PetscReal passed = contact_let_pass(c, passes, let);
+  for (int d = 0; d < 3; ++d) idle[d] = !told ? 0 : rubs(c->law.kind) ? (passed - c->behind) * c->facing[d] : let[d];
 }
 
-/* Of the mean force in the step. */
+static PetscBool is_none(const PetscReal f[3]) { return (PetscBool)(f[0] == 0 && f[1] == 0 && f[2] == 0); }
+
+/* Of the mean force in the step: with inertia that of its end, in statics of both ends, each with the normal that it
+ * has there. */
 static ContactWork point_work(const Model *m, const ContactPoint *c, PetscReal dt)
 {
   const PetscReal end = m->scheme->inertia ? share_of_force(m).mean : 0.5, first = m->scheme->inertia ? 0 : 0.5;
-  PetscReal f[3], balance[3], x[3], passes[3], idle[3], way[3], pressure = 0, closing = 0;
+  PetscReal acts[3], balance[3], x[3], passes[3], idle[3];
   ContactWork work = {0};
-  contact_acts(c, f);
+  contact_acts(c, acts);
+  if (is_none(acts) && is_none(c->last)) return work; /* most that is near a wall has not met it */
   contact_balance(m->contact, c, balance);
   contact_place(m->contact, c, m->nodes->du, 1, x);
   passing(m, c, dt, x, passes);
-  idling(m, c, idle);
+  idling(m, c, passes, idle);
+  const PetscReal pressed = first * vector_dot(c->last, c->facing), presses = end * vector_dot(acts, c->push);
   for (int d = 0; d < 3; ++d) {
-    f[d] = first * c->last[d] + end * f[d];
-    pressure += f[d] * c->push[d];
-    way[d] = x[d] - c->x[d] - c->swept[d] + idle[d];
-    closing += way[d] * c->push[d];
+    const PetscReal f = first * c->last[d] + end * acts[d], pressure = pressed * c->facing[d] + presses * c->push[d];
+    const PetscReal went = x[d] - c->x[d], way = went - passes[d] + idle[d], start = c->stays * c->last[d];
+    work.start += 0.5 * start * went;
+    work.more += (f - 0.5 * (start + balance[d])) * went;
+    work.moving += f * (passes[d] - idle[d]);
+    work.closing += pressure * way;
+    work.sliding -= (f - pressure) * way;
   }
-  for (int d = 0; d < 3; ++d) {
-    const PetscReal start = c->stays * c->last[d];
-    work.start += 0.5 * start * (x[d] - c->x[d]);
-    work.more += (f[d] - 0.5 * (start + balance[d])) * (x[d] - c->x[d]);
-    work.moving += f[d] * (passes[d] - idle[d]);
-    work.closing += f[d] * (c->swept[d] - passes[d]);
-    work.sliding -= (f[d] - pressure * c->push[d]) * way[d];
-  }
-  work.closing += pressure * closing;
   if (!rubs(c->law.kind)) { /* along a wall that does not rub only a force does work that had another normal before */
     work.closing -= work.sliding;
     work.sliding = 0;
@@ -330,8 +336,8 @@ static void take_section(const Model *m, const NodalScene *scene, ContactPoint *
   c->section = c->cover * contact_section(scene, c->owner, c->normal, (PetscReal[]){r, x[0]});
 }
 
-/* stepped: has a step slid them? */
-static PetscErrorCode Survey(Model *m, PetscBool stepped)
+/* dt: of the step that has slid them; 0: none has. */
+static PetscErrorCode Survey(Model *m, PetscReal dt)
 {
   const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
   const Contact *s = m->contact;
@@ -343,7 +349,7 @@ static PetscErrorCode Survey(Model *m, PetscBool stepped)
   PetscCall(PetscCalloc2(2 * n, &sums, n, &deepest));
   PetscCall(ContactCover(m->contact, m->grid));
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    if (stepped) sums[c->wall] += point_work(m, c, 0).sliding;
+    if (dt > 0) sums[c->wall] += point_work(m, c, dt).sliding;
     if (!c->covered) continue;
     take_section(m, &scene, c);
     sums[n + c->wall] += c->section;
@@ -360,10 +366,10 @@ static PetscErrorCode Survey(Model *m, PetscBool stepped)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode ContactSurvey(Model *m)
+PetscErrorCode ContactSurvey(Model *m, PetscReal dt)
 {
   PetscFunctionBeginUser;
-  PetscCall(Survey(m, PETSC_TRUE));
+  PetscCall(Survey(m, dt));
   PetscFunctionReturn(0);
 }
 
@@ -375,7 +381,7 @@ PetscErrorCode ContactStand(Model *m)
   const NodalScene scene = nodal_scene(m, m->time, m->nodes->du);
   PetscCall(ContactFind(m->contact, &scene));
   contact_stand(m->contact, share_of_force(m).mean);
-  PetscCall(Survey(m, PETSC_FALSE));
+  PetscCall(Survey(m, 0));
   PetscFunctionReturn(0);
 }
 

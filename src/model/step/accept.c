@@ -107,7 +107,7 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
     m->nodes->pressure[node] = m->pressure_scale * m->nodes->scaled_pressure[node];
   const NodalScene scene = nodal_scene(m, m->time + dt, m->nodes->du);
   PetscCall(NodalForcesCommit(&m->forces, &scene));
-  PetscCall(ContactSurvey(m));
+  PetscCall(ContactSurvey(m, dt));
   PetscCall(PhaseEnd(m->seconds, PHASE_COMMIT, &clock));
   PetscFunctionReturn(0);
 }

@@ -26,21 +26,20 @@ typedef struct {
   PetscInt owner; /* the material point, or the node */
   PetscInt wall;  /* or the number of walls + the interface */
   int side;
-  PetscBool edge;      /* is it an edge or a corner of the wall that its owner sees at the start? */
-  PetscInt slot_kept;  /* which of the sides that its owner remembers of the partner this is */
-  PetscInt anchor;     /* in a corner of the wall: this side of it, of Contact; else -1: what is nearest */
-  PetscInt first, n;   /* nodes that carry it: node[first] .. of Contact; the first of them, */
-  PetscInt own;        /* so many, are of its own body, others of the other one, */
-  PetscInt slot;       /* and the first of their n x n pairs */
-  PetscReal spread;    /* sum of their |N|: it moves by no more than that times what the nodes do */
-  PetscReal reach;     /* from the material point to its surface, at the start of the step, m; */
-  PetscReal ahead;     /* and of that what counts along the normal at the last assembly */
-  PetscReal leapt;     /* and what has come of leaps of its gap, m: contact_bodies.c */
-  PetscReal x[3];      /* at the start of the step, m */
-  PetscReal swept[3];  /* what the wall's matter there moves by in the step, m; */
-  PetscReal passes[3]; /* and that which is there in its middle: forces times it are work, torques times angles alike */
-  PetscReal section;   /* of the surface that it stands for, m2; */
-  PetscReal cover;     /* the share of it that the other body stands before; 1: a wall */
+  PetscBool edge;     /* is it an edge or a corner of the wall that its owner sees at the start? */
+  PetscInt slot_kept; /* which of the sides that its owner remembers of the partner this is */
+  PetscInt anchor;    /* in a corner of the wall: this side of it, of Contact; else -1: what is nearest */
+  PetscInt first, n;  /* nodes that carry it: node[first] .. of Contact; the first of them, */
+  PetscInt own;       /* so many, are of its own body, others of the other one, */
+  PetscInt slot;      /* and the first of their n x n pairs */
+  PetscReal spread;   /* sum of their |N|: it moves by no more than that times what the nodes do */
+  PetscReal reach;    /* from the material point to its surface, at the start of the step, m; */
+  PetscReal ahead;    /* and of that what counts along the normal at the last assembly */
+  PetscReal leapt;    /* and what has come of leaps of its gap, m: contact_bodies.c */
+  PetscReal x[3];     /* at the start of the step, m */
+  PetscReal swept[3]; /* what the wall's matter there moves by in the step, m */
+  PetscReal section;  /* of the surface that it stands for, m2; */
+  PetscReal cover;    /* the share of it that the other body stands before; 1: a wall */
   /* of its material, and of that of the other body (0: a wall), Pa, kg/m3 */
   PetscReal modulus[2], density[2];
   PetscReal stiffer; /* by so much does it oppose a change of volume more than `modulus` says, */

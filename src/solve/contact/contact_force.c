@@ -91,7 +91,6 @@ PetscBool contact_meets(const Contact *s, ContactPoint *c, const NodalScene *sce
   take_way(s, c, scene->du, scene->whole, way);
   for (int d = 0; d < 3; ++d) x[d] = c->x[d] + way[d];
   if (rigid) rigid_sweep(rigid, c->x, x, c->swept);
-  for (int d = 0; d < 3 && rigid; ++d) c->passes[d] = c->swept[d];
   stay_open(c);
   c->ahead = c->reach;
   if (rigid) c->passed = contact_let_pass(c, c->swept, c->let); /* of others it is known */

@@ -96,18 +96,6 @@ static PetscReal stiffness_of(const ContactPoint *c, PetscReal h, PetscReal iner
   return other > 0 ? k * other / (k + other) : k;
 }
 
-/* A chord of what turns leads inwards, where forces of the end would do work that no torque does; those of the middle,
- * or the mean of both ends that statics have, do what the torque does along the chord. */
-static void sweep(const Contact *s, ContactPoint *c, PetscReal t, PetscReal dt)
-{
-  PetscReal x[3];
-  wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
-  for (int d = 0; d < 3; ++d) c->passes[d] = c->swept[d];
-  if (!s->share.inertia) return;
-  for (int d = 0; d < 3; ++d) x[d] = c->x[d] - c->swept[d] / 2;
-  wall_motion(s->walls, c->wall, t, t + dt, x, c->passes);
-}
-
 /* Grains that flow have gaps of their own (FLOWING). */
 static PetscReal stiffest_of(const Contact *s, const ContactPoint *c)
 {
@@ -143,7 +131,7 @@ void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, C
     for (int d = 0; d < 3 && c->before == CONTACT_OPEN; ++d) c->last[d] = 0; /* explicit dynamics keeps slips there */
     c->law.bond = c->bond / share.mean;
     c->halfway = pushes_halfway(s, c);
-    if (c->wall < s->n_walls && !contact_rigid(s, c)) sweep(s, c, t, dt);
+    if (c->wall < s->n_walls && !contact_rigid(s, c)) wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
     first_multiplier(s, c);
   }
 }
