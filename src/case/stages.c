@@ -43,21 +43,57 @@ void case_begin(Case *c, const PetscReal *start)
   c->gravity_amplitude.origin = start[c->gravity_amplitude.since];
 }
 
+/* The body of that name, if it is there. */
+static const BodySpec *body_there(const Case *c, const char *name)
+{
+  for (const BodySpec *b = c->bodies; b < c->bodies + c->n_bodies; ++b)
+    if (!strcmp(b->name, name)) return b->absent ? NULL : b;
+  return NULL;
+}
+
 /* Is it there, and not any more in a later stage? */
 static PetscBool leaves(const Case *c, PetscInt stage, const BodySpec *body)
 {
-  for (PetscInt k = stage + 1; k < c->n_stages && !body->absent; ++k) {
-    const Case *later = c->stage_case[k];
-    PetscInt b = 0;
-    while (b < later->n_bodies && strcmp(later->bodies[b].name, body->name) != 0) ++b;
-    if (b == later->n_bodies || later->bodies[b].absent) return PETSC_TRUE;
+  for (PetscInt k = stage + 1; k < c->n_stages && !body->absent; ++k)
+    if (!body_there(c->stage_case[k], body->name)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Has it no velocity, or none of the stage before? */
+static PetscBool begins(const Case *c, PetscInt stage, const BodySpec *body)
+{
+  if (!stage || body->absent) return PETSC_FALSE;
+  const Case *before = c->stage_case[stage - 1];
+  const StageSpec *spec = c->stage_case[stage]->spec;
+  if (case_is_static(&before->analysis) || (spec && spec->reset.velocity)) return PETSC_TRUE;
+  return (PetscBool)!body_there(before, body->name);
+}
+
+static PetscBool meets(const WallSpec *w, const char *body)
+{
+  for (PetscInt i = 0; i < w->n_bodies; ++i)
+    if (!strcmp(w->bodies[i], body)) return PETSC_TRUE;
+  return !w->n_bodies;
+}
+
+static PetscBool waits(const Case *c, PetscInt stage, const WallSpec *w)
+{
+  for (PetscInt k = stage + 1; k < c->n_stages; ++k) {
+    const Case *now = c->stage_case[k];
+    for (const BodySpec *b = now->bodies; b < now->bodies + now->n_bodies; ++b)
+      if (!b->absent && meets(w, b->name) && !body_there(c->stage_case[k - 1], b->name)) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
 
-void case_tell_leaving(Case *c)
+void case_tell_changes(Case *c)
 {
-  for (PetscInt k = 0; k < c->n_stages; ++k)
-    for (PetscInt b = 0; b < c->stage_case[k]->n_bodies; ++b)
-      c->stage_case[k]->bodies[b].leaves = leaves(c, k, c->stage_case[k]->bodies + b);
+  for (PetscInt k = 0; k < c->n_stages; ++k) {
+    Case *now = c->stage_case[k];
+    for (BodySpec *b = now->bodies; b < now->bodies + now->n_bodies; ++b) {
+      b->leaves = leaves(c, k, b);
+      b->begins = begins(c, k, b);
+    }
+    for (WallSpec *w = now->walls; w < now->walls + now->n_walls; ++w) w->waits = waits(c, k, w);
+  }
 }

@@ -466,7 +466,7 @@ static PetscErrorCode ReadStages(const char *file, YamlDocument *document, Diag 
   diag_of_stage(diag, -1, NULL);
   if (diag_errors(diag) > before) PetscFunctionReturn(0);
   PetscCall(CaseCollectColumns(whole));
-  case_tell_leaving(whole);
+  case_tell_changes(whole);
   for (PetscInt k = 0; k < whole->n_stages; ++k) {
     check_units(whole, k, diag);
     check_windows(whole, k, diag);

@@ -225,6 +225,8 @@ PetscErrorCode ChooseNextStep(Model *model, PetscBool shortened, PetscBool retur
 #define CONTACT_HAIR 1e-4
 /* contact/start.c. Collective. Walls of the case, and what of the material touches them at the start. */
 PetscErrorCode WallsStart(Model *model, Diag *diag);
+/* Collective. Bonded is what touches as the wall comes, or as a body comes to it: any, on this rank? */
+PetscErrorCode TellUntouched(const Model *model, PetscInt k, PetscBool any, Diag *diag);
 /* Was the wall there before the stage, as it is now? */
 PetscBool wall_stood(const WallSpec *wall, const Case *c, const Case *from);
 /* Collective. Walls that a stage brings, or puts elsewhere, stand where no material is. */
@@ -244,8 +246,8 @@ struct Surface;
 PetscErrorCode InterfaceSurfaces(const Model *model, PetscInt k, struct Surface *body);
 /* Collective. Interfaces that are bonded from this stage on hold what touches. */
 PetscErrorCode InterfacesBond(Model *model, const Case *from);
-/* contact/bonds.c. Collective. And walls, too. */
-PetscErrorCode BondsBegin(Model *model, const Case *from);
+/* contact/bonds.c. Collective. And walls, too, which hold what comes with the stage from now on. */
+PetscErrorCode BondsBegin(Model *model, const Case *from, Diag *diag);
 /* Point p, at a distance `gap` (m) from its partner, is bonded if nothing presses it there (was) but it touches. */
 void contact_bond(const Model *model, PetscInt p, const PetscReal normal[3], PetscReal gap, const PetscReal *was,
                   PetscReal *kept);

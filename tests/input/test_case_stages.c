@@ -128,10 +128,35 @@ static void Clock(void **state)
   }
 }
 
+/* Whose motion begins with a stage: who comes, and who has stood still; and which walls wait for whom. */
+static void Begins(void **state)
+{
+  const PetscBool begins[6][2] = {{0, 0}, {0, 1}, {0, 0},
+                                  {1, 1}, {0, 0}, {1, 1}}; /* of beam and late, stage by stage */
+  const PetscBool waits[6][2] = {{1, 0}};                  /* of the wall for all, and of that for beam */
+  (void)state;
+  const char *text = PLAIN_TOP PLAIN_GRID PLAIN_BODIES
+    "  - {name: late, shape: {box: {min: [3, 0], max: [4, 1]}}, material: rubber, absent: true}\n" PLAIN_MATERIALS
+    "walls: [{name: w, shape: {half-space: {point: [0, 0], normal: [0, 1]}}},\n"
+    "  {name: v, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, bodies: [beam]}]\n"
+    "stages:\n  - {name: one, analysis: {type: dynamic, end: 1, step: 0.1}}\n"
+    "  - {name: two, bodies: [{name: late, absent: false}]}\n"
+    "  - {name: three, analysis: {type: static, end: 1, steps: 1}}\n"
+    "  - {name: four, analysis: {type: dynamic, end: 1, step: 0.1}}\n  - {name: five}\n"
+    "  - {name: six, reset: [velocity]}\n";
+  Case *c = read_good(text);
+  for (PetscInt k = 0; k < 6; ++k)
+    for (PetscInt b = 0; b < 2; ++b) {
+      assert_int_equal(c->stage_case[k]->bodies[b].begins, begins[k][b]);
+      assert_int_equal(c->stage_case[k]->walls[b].waits, waits[k][b]);
+    }
+  assert_int_equal(CaseDestroy(&c), 0);
+}
+
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(Loads), cmocka_unit_test(Ages), cmocka_unit_test(Entries),
-                                     cmocka_unit_test(Names), cmocka_unit_test(Clock)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(Loads), cmocka_unit_test(Ages),  cmocka_unit_test(Entries),
+                                     cmocka_unit_test(Names), cmocka_unit_test(Clock), cmocka_unit_test(Begins)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() || failed;

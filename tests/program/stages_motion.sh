@@ -542,6 +542,95 @@ for absent in false true; do
       fail "$name: $(awk -F, '$3 == 2' bonds/history.csv | head -n 1)"
   done
 done
+# Bonded walls hold what a stage brings to them, too, though something else has been bonded there before: it is held on all
+# of its foot, and goes on as if all had begun then (without a word it fell, or slid on as if nothing were there).
+cat >lands.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: dynamic, end: 0.015625, step: 0.00390625}
+grid: {box: {min: [1, 0.5], max: [3.5, 1]}, size: 0.25}
+bodies:
+  - {name: s, shape: {box: {min: [3, 0.5], max: [3.5, 1]}}, points_per_cell: 4, material: m}
+  - {name: b, shape: {box: {min: [1, 0.5], max: [2, 1]}}, points_per_cell: 4, material: m, velocity: [3, 2]}
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+walls: [{name: w, shape: {half-space: {point: [0, 0.5], normal: [0, 1]}}, contact: bonded}]
+measures: {area: {contact: area, of: {wall: w}}, px: {momentum: x, of: {body: b}}, py: {momentum: y, of: {body: b}}, f: {wall_force: y, of: {wall: w}}}
+output: {history: {steps: 1}}
+END
+sed 's/, velocity: \[3, 2\]/&, absent: true/' lands.yaml >lands_late.yaml
+echo 'stages: [{name: one}, {name: two, bodies: [{name: b, absent: false}]}]' >>lands_late.yaml
+# How far from one another, kg m/s; ranks; its settings.
+lands() {
+  near=$1 ranks=$2
+  shift 2
+  expect "what begins on a bonded wall, $ranks, $*" 0 on_ranks "$ranks" "$talus" run lands.yaml --out lands --force --quiet "$@"
+  expect "what comes to it, $ranks, $*" 0 on_ranks "$ranks" "$talus" run lands_late.yaml --out late --force --quiet "$@"
+  awk -F, -v near="$near" 'NR > 1 && FNR == NR { x[$2] = $(NF - 2); y[$2] = $(NF - 1) }
+    NR > FNR && $3 == 2 { n += 1; if (($4 - 1.5) ^ 2 > 0.015 ^ 2 || ($5 - x[$2 - 4]) ^ 2 + ($6 - y[$2 - 4]) ^ 2 > near ^ 2) bad = 1 }
+    END { exit bad || n != 4 }' lands/history.csv late/history.csv ||
+    fail "$name: $(cut -d, -f3- lands/history.csv late/history.csv | tr '\n' ' ')"
+}
+for ranks in 1 2; do
+  lands 1 $ranks
+  lands 1 $ranks --set method=mpm --set "$box"
+done
+lands 1 1 --set method=mpm --set "$box" --set 'analysis={type: dynamic, end: 0.015625, step: 0.00390625, transfer: thesis}' --set 'stabilisation={follow: 0.02, curvature: 0.1}'
+lands 1 1 --set method=mpm --set "$box" --set 'analysis={type: explicit, end: 0.015625, step: 0.00390625}'
+for method in fem mpm; do
+  expect "and in statics it hangs, $method" 0 "$talus" run lands_late.yaml --out late --force --quiet --set method=$method --set "$box" \
+    --set 'analysis={type: static, steps: 1}' --set 'stages[1].loads={gravity: [0, 10]}'
+  awk -F, 'END { exit !(($7 + 7500) ^ 2 < 1e-4) }' late/history.csv || fail "$name: $(cat late/history.csv)"
+done
+# Nothing touches the wall before: it waits for what comes, unless that comes beside it.
+expect "a bonded wall that waits" 0 "$talus" run lands_late.yaml --out late --force --set 'walls[0].bodies=[b]'
+lacks err.txt "nothing touches"
+expect "and what comes beside it" 0 "$talus" run lands_late.yaml --out late --force --set 'walls[0].bodies=[b]' --set 'walls[0].shape.half-space.point=[0, 0.4]'
+says err.txt "nothing touches wall 'w' at the start of the stage"
+
+# By the midpoint rule, too, what a stage brings to a wall, moving, takes over the wall's velocity, as what is there from
+# the start: it rang for ever, 9541, 0, 2031, 15186, 0, 12319 N for 22455, 1880, 2922, 3785, 4468, 4889.
+cat >rings.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, end: 0.006, step: 0.001}
+grid: {box: {min: [-0.25, -0.25], max: [2.15, 1.15]}, size: 0.1}
+stabilisation: {follow: 0.02, curvature: 0.1}
+bodies:
+  - {name: a, shape: {box: {min: [1.5, 0], max: [1.8, 0.3]}}, material: m}
+  - {name: b, shape: {box: {min: [0.3, 0.3], max: [0.8, 0.6]}}, material: m, velocity: [0, -1]}
+materials: {m: {law: neo-hookean, density: 1000, young: 1e5, poisson: 0.3}}
+walls: [{name: w, shape: {half-space: {point: [0, 0.3], normal: [0, 1]}}, bodies: [b]}]
+measures: {f: {wall_force: y, of: {wall: w}}}
+output: {history: {steps: 1}}
+END
+sed 's/, velocity: \[0, -1\]/&, absent: true/' rings.yaml >rings_late.yaml
+echo 'stages: [{name: one}, {name: two, bodies: [{name: b, absent: false}]}]' >>rings_late.yaml
+for basis in gimp bspline; do
+  for ranks in 1 2; do
+    for file in rings rings_late; do
+      expect "$file, $basis on $ranks" 0 on_ranks $ranks "$talus" run $file.yaml --out $file --force --quiet --set "basis={$basis: {}}"
+    done
+    awk -F, 'NR > 1 && FNR == NR { f[$2] = $NF } NR > FNR && $3 == 2 { n += 1; if (($NF / f[$2 - 6] - 1) ^ 2 > 1e-11) bad = 1 } END { exit bad || n != 6 }' \
+      rings/history.csv rings_late/history.csv || fail "$name: $(cat rings/history.csv rings_late/history.csv)"
+  done
+done
+
+# So does what a reset has brought to rest before a wall that goes on: a bar that a plate pushes, whose wave is 39.5 N.
+cat >rests.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: dynamic, end: 0.004, step: 0.001}
+grid: {box: {min: [-0.5, -0.25], max: [2.5, 0.5]}, size: 0.125}
+bodies: [{name: b, shape: {box: {min: [0, 0], max: [2, 0.125]}}, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0}}
+walls: [{name: w, shape: {half-space: {point: [0, 0], normal: [1, 0]}}, motion: [{velocity: {x: 0.01}}]}]
+measures: {f: {wall_force: x, of: {wall: w}}}
+output: {history: {steps: 1}}
+stages: [{name: one}, {name: two, reset: [velocity], analysis: {type: dynamic, end: 0.012, step: 0.001}}]
+END
+expect "what begins anew before a plate" 0 "$talus" run rests.yaml --out rests --force --quiet
+awk -F, 'NR > 13 && ($NF < 38 || $NF > 42) { bad = 1 } END { exit bad || NR != 18 }' rests/history.csv || fail "$name: $(cat rests/history.csv)"
+
 # So does what another run hands over: what falls has the way of gravity from its first step on, what is let go its momentum.
 (sed '/^stages/,$d' drop.yaml && echo 'initial: {run: flight}
 loads: {gravity: [0, -10]}') | sed 's/end: 0.04/end: 0.1/; s/, velocity: \[0, 1\]//' >goes.yaml

@@ -45,6 +45,7 @@ typedef struct {
   PetscReal surface;
   PetscBool absent; /* not yet, or no more: a stage places and removes */
   PetscBool leaves; /* does a later stage take it away? */
+  PetscBool begins; /* does its motion begin with this stage, another than the first: it comes, or has stood still? */
   PetscBool bears;  /* has it borne its weight at rest before: in statics, by an initial stress, in another run? */
 } BodySpec;
 

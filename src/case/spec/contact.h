@@ -40,6 +40,7 @@ typedef struct {
   PetscInt since; /* stage whose words brought it: from and until count from its start; */
   PetscInt drawn; /* and the one whose words gave its shape: one with mass stands there as that begins */
   PetscBool absent;
+  PetscBool waits; /* does a later stage bring a body that meets it? */
 } WallSpec;
 
 /* How bodies meet that do not stick to each other: the second is to the first what a wall is. */

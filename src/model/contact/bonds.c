@@ -1,6 +1,7 @@
-/* Bonds that a stage brings: walls and interfaces that are bonded from now on hold what touches them as it begins. */
+/* Bonds that a stage brings: walls and interfaces that are bonded from now on hold what touches them as it begins, and
+ * walls that were before hold bodies that come. */
 #include <string.h>
-#include "model/model_private.h"
+#include "model/stage/stage_private.h"
 
 /* Has the stage before bonded what the wall touches? */
 static PetscBool was_bonded(const WallSpec *wall, const Case *from)
@@ -42,15 +43,45 @@ static void bond_to_wall(const Model *m, PetscInt k, PetscInt p)
                  contact_kept(m->points, p, k, contact_sides(m->c), slot[i]));
 }
 
-PetscErrorCode BondsBegin(Model *m, const Case *from)
+/* Has anything touched any side of wall k? */
+static PetscBool is_touched(const Model *m, PetscInt k)
 {
+  const PetscInt sides = contact_sides(m->c);
+  for (PetscInt p = 0; p < m->points->n; ++p)
+    for (PetscInt i = 0; i < sides && contact_meets_body(m->c, k, m->points->body[p]); ++i)
+      if ((int)(contact_kept(m->points, p, k, sides, i)[KEPT_STATE] + 0.5) != CONTACT_OPEN) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Collective. held: of each body, are its points bonded to the wall now, as far as they touch? */
+static PetscErrorCode BondToWall(Model *m, PetscInt k, const PetscBool *held, Diag *diag)
+{
+  PetscBool any = PETSC_FALSE;
+
   PetscFunctionBeginUser;
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b) any |= held[b] && contact_meets_body(m->c, k, b);
+  if (!any || !wall_comes(m->walls, k, m->time)) PetscFunctionReturn(0);
+  for (PetscInt p = 0; p < m->points->n; ++p)
+    if (held[m->points->body[p]] && contact_meets_body(m->c, k, m->points->body[p])) bond_to_wall(m, k, p);
+  PetscCall(TellUntouched(m, k, is_touched(m, k), diag));
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode BondsBegin(Model *m, const Case *from, Diag *diag)
+{
+  PetscBool *held;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(m->c->n_bodies, &held));
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
     const WallSpec *wall = m->c->walls + k;
-    if (wall->absent || wall->contact != CONTACT_BONDED || was_bonded(wall, from)) continue;
-    for (PetscInt p = 0; p < m->points->n && wall_comes(m->walls, k, m->time); ++p)
-      if (contact_meets_body(m->c, k, m->points->body[p])) bond_to_wall(m, k, p);
+    if (wall->absent || wall->contact != CONTACT_BONDED) continue;
+    const PetscBool goes_on = was_bonded(wall, from);
+    for (PetscInt b = 0; b < m->c->n_bodies; ++b)
+      held[b] = (PetscBool)(!m->c->bodies[b].absent && (!goes_on || body_comes(m->c, from, b)));
+    PetscCall(BondToWall(m, k, held, diag));
   }
+  PetscCall(PetscFree(held));
   PetscCall(InterfacesBond(m, from));
   PetscFunctionReturn(0);
 }

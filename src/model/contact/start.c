@@ -164,18 +164,27 @@ static PetscErrorCode TellDent(const Model *m, PetscInt k, Worst *dent, Diag *di
   PetscFunctionReturn(0);
 }
 
-/* Collective. Bonded is what touches when the wall comes. */
-static PetscErrorCode TellLoose(const Model *m, PetscInt k, PetscBool any, Diag *diag)
+/* Is there nothing yet that could touch it? */
+static PetscBool waits(const Model *m, PetscInt k)
+{
+  for (PetscInt b = 0; b < m->c->n_bodies; ++b)
+    if (!m->c->bodies[b].absent && contact_meets_body(m->c, k, b)) return PETSC_FALSE;
+  return m->c->walls[k].waits;
+}
+
+PetscErrorCode TellUntouched(const Model *m, PetscInt k, PetscBool any, Diag *diag)
 {
   const WallSpec *wall = m->c->walls + k;
   char path[64];
 
   PetscFunctionBeginUser;
   PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_BOOL, MPI_LOR, m->comm));
-  if (any || wall->contact != CONTACT_BONDED || wall->absent || wall->from > 0) PetscFunctionReturn(0);
+  if (any || wall->contact != CONTACT_BONDED || wall->absent || wall->from > m->c->start) PetscFunctionReturn(0);
+  if (waits(m, k)) PetscFunctionReturn(0);
   PetscCall(PetscSNPrintf(path, sizeof path, "walls[%d].contact", (int)k));
-  diag_warning(diag, path, "nothing touches wall '%s' at the start: what is bonded is held if it does, and nothing is",
-               wall->name);
+  diag_warning(diag, path,
+               "nothing touches wall '%s' at the start%s: what is bonded is held if it does, and nothing is",
+               wall->name, m->c->stage ? " of the stage" : "");
   diag_hint(diag, "let a body's surface and the wall's be the same; `stick` holds what comes to it later");
   PetscFunctionReturn(0);
 }
@@ -193,7 +202,7 @@ PetscErrorCode WallsStart(Model *m, Diag *diag)
     Worst inside = {0}, dent = {0};
     const PetscBool any = look_at_wall(m, k, PETSC_TRUE, &inside, &dent);
     if (m->c->stage) continue; /* bodies are elsewhere */
-    PetscCall(TellLoose(m, k, any, diag));
+    PetscCall(TellUntouched(m, k, any, diag));
     PetscCall(TellThrough(m, k, &inside, diag));
     PetscCall(TellDent(m, k, &dent, diag));
   }

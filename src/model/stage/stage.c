@@ -204,7 +204,7 @@ static PetscErrorCode Take(Model *m, Tables *tables, const Case *from, const Mod
   for (int pass = 0; next && pass < 2; ++pass) /* what reaches over at one has another surface at the next one */
     for (PetscInt k = 0; k < m->c->n_interfaces; ++k)
       if (meets_who_comes(m->c, from, m->c->interfaces + k)) PetscCall(InterfaceCloses(m, k));
-  if (next) PetscCall(BondsBegin(m, from));
+  if (next) PetscCall(BondsBegin(m, from, diag));
   PetscCall(ResetMotion(m, from, next));
   PetscCall(KeepAccount(m, stored_then, before));
   PetscFunctionReturn(0);

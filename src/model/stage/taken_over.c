@@ -99,6 +99,13 @@ static PetscErrorCode Subtract(const Model *m, PetscReal *given, PetscReal *lack
   PetscFunctionReturn(0);
 }
 
+/* What has just been bonded, and moves, is stopped by the step, and by no impulse before that: it counts as what slides,
+ * whatever it bears (contact/bonds.c). */
+static void stay_new(const Model *m, ContactState was, ContactPoint *c)
+{
+  if (m->scheme->inertia && c->law.kind == CONTACT_BONDED && was == CONTACT_SLIDES) c->before = CONTACT_SLIDES;
+}
+
 /* Contact points of one partner bear what nodes lack of one of its bodies, which lack it no more. */
 static PetscErrorCode PartnerTakes(const Model *m, PetscInt partner, int sign, PetscReal *lacks, PetscBool *taken)
 {
@@ -112,7 +119,9 @@ static PetscErrorCode PartnerTakes(const Model *m, PetscInt partner, int sign, P
   PetscCall(NodeAreas(m, partner, sign, takes, area, &any));
   for (PetscInt k = 0; k < s->n; ++k) {
     if (!takes[k]) continue;
+    const ContactState was = s->point[k].before;
     press(m, s->point + k, sign, lacks, area, given);
+    stay_new(m, was, s->point + k);
     if (s->point[k].before == CONTACT_OPEN) continue;
     keep(m, s->point + k);
     *taken = PETSC_TRUE;

@@ -60,6 +60,7 @@ typedef struct {
   ContactState before; /* at the end of the last step */
   PetscBool gone;      /* has the wall vanished when the step begins? Its last force is to be forgotten */
   PetscBool touches;   /* is there no gap at the start of the step? */
+  PetscBool begins;    /* does the motion of its body begin with the step, and with it a stage? */
   PetscBool inner;     /* has its point none of the body's surface that looks at the partner? */
   PetscBool covered;   /* does its surface touch after the step? See ContactCover */
   PetscReal gap;       /* at the last assembly, m */

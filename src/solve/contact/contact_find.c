@@ -278,6 +278,12 @@ static PetscBool arrives(const Contact *s, const NodalScene *scene, PetscInt k)
   return (PetscBool)(wall_comes(s->walls, k, scene->t) && !wall_stands(s->walls, k, scene->t));
 }
 
+/* Does the motion of the point's body begin now? Its wall may have been there for long. */
+static PetscBool begins(const NodalScene *scene, PetscInt p)
+{
+  return (PetscBool)(scene->t <= scene->c->start && scene->c->bodies[scene->points->body[p]].begins);
+}
+
 /* By how much a wall has passed the surface of a point at the start of the step. One that comes where some of the body
  * is already, in dynamics, has passed that much: to push it out within a step of any length would give it what speed
  * and energy one likes (docs/theory.md, section 76). */
@@ -324,6 +330,7 @@ static PetscErrorCode MeetSide(Contact *s, const NodalScene *scene, PetscInt g, 
   c->gone = !wall_comes(s->walls, k, scene->t);
   c->open = place.gap;
   c->touches = c->touches && !c->gone;
+  c->begins = begins(scene, p);
   PetscCall(ContactAddNodes(s, c, nn));
   for (PetscInt d = 0; d < dim; ++d) c->x[d] = x[d] - reach * place.normal[d];
   contact_take_section(s, scene, contact_section(scene, p, place.normal, (PetscReal[]){x[0], c->x[0]}), c);

@@ -18,7 +18,7 @@ static const SchemaWord contact_words[] = {
   {"frictionless", CONTACT_FRICTIONLESS, "material slides along the wall and leaves it freely"},
   {"friction", CONTACT_FRICTION, "Coulomb: it slides where the tangential force reaches friction times the normal one"},
   {"stick", CONTACT_STICK, "it does not slide while in contact, and leaves the wall freely"},
-  {"bonded", CONTACT_BONDED, "what is in contact at the start stays there"},
+  {"bonded", CONTACT_BONDED, "what is in contact at the start, or as the stage that brings it begins, stays there"},
   {NULL, 0, NULL},
 };
 
@@ -189,7 +189,7 @@ static const SchemaWord interface_words[] = {
   {"friction", CONTACT_FRICTION,
    "Coulomb: they slide where the tangential force reaches friction times the normal one"},
   {"stick", CONTACT_STICK, "they do not slide while in contact, and part freely"},
-  {"bonded", CONTACT_BONDED, "what is in contact at the start stays together"},
+  {"bonded", CONTACT_BONDED, "what is in contact at the start, or as the stage that brings it begins, stays together"},
   {NULL, 0, NULL},
 };
 

@@ -58,13 +58,14 @@ static PetscErrorCode LetGo(Projection *w, PetscBool *any)
 /* Of the larger speed: by more a wall's velocity jumps, and not by what rounding and its two differences are off. */
 #define JUMP 1e-2
 
-/* Is the wall of contact point k, now at x, a new one, or does it go on with another velocity than it came with? */
+/* Is the wall of contact point k, now at x, a new one, or does it go on with another velocity than it came with? To a
+ * body whose motion begins each wall is new. */
 static PetscBool jumps(const Projection *w, PetscInt k, const PetscReal x[3])
 {
   const ContactPoint *c = w->s->point + k;
   PetscReal before[3], after[3], jump = 0, fastest = 0;
   if (c->wall >= w->s->n_walls || contact_rigid(w->s, c)) return PETSC_FALSE;
-  if (wall_is_new(w->s->walls, c->wall, w->m->time)) return PETSC_TRUE;
+  if (c->begins || wall_is_new(w->s->walls, c->wall, w->m->time)) return PETSC_TRUE;
   wall_velocity(w->s->walls, c->wall, w->m->time, -w->m->glance, x, before);
   wall_velocity(w->s->walls, c->wall, w->m->time, w->m->glance, x, after);
   for (int d = 0; d < 3; ++d) {
