@@ -631,6 +631,51 @@ END
 expect "what begins anew before a plate" 0 "$talus" run rests.yaml --out rests --force --quiet
 awk -F, 'NR > 13 && ($NF < 38 || $NF > 42) { bad = 1 } END { exit bad || NR != 18 }' rests/history.csv || fail "$name: $(cat rests/history.csv)"
 
+# What is released bit by bit is what a stage changes: a body in flight goes on falling (it hung in the air, and was let go
+# in proportion to time), whatever else comes, goes, or begins to push.
+cat >flies.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: dynamic, end: 0.02, step: 0.002}
+grid: {box: {min: [0, 0], max: [4, 2]}, size: 0.25}
+bodies:
+  - {name: b, shape: {box: {min: [1, 1], max: [1.5, 1.5]}}, points_per_cell: 4, material: m}
+  - {name: s, shape: {box: {min: [3, 0], max: [3.5, 0.5]}}, points_per_cell: 4, material: m}
+  - {name: l, shape: {box: {min: [3, 1], max: [3.5, 1.5]}}, points_per_cell: 4, material: m, absent: true}
+materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
+boundary: [{on: {y: 0}, fix: [x, y]}]
+loads: {gravity: [0, -10]}
+measures: {p: {momentum: y, of: {body: b}}}
+output: {history: {steps: 1}}
+stages: [{name: one}, {name: two, release: 0.01}]
+END
+flies() { # its settings
+  turn
+  expect "what flies flies on, on $ranks, $*" 0 on_ranks $ranks "$talus" run flies.yaml --out flies --force --quiet "$@"
+  awk -F, 'NR > 1 && ($4 + 2500 * $1) ^ 2 > 1e-8 { bad = 1 } END { exit bad || $3 != 2 }' flies/history.csv || fail "$name: $(cut -d, -f1,3- flies/history.csv)"
+}
+for who in s l; do
+  flies --set "stages[1].bodies=[{name: $who, absent: false}]"
+  flies --set "stages[1].bodies=[{name: $who, absent: false}]" --set method=mpm
+  flies --set "stages[1].bodies=[{name: $who, absent: false}]" --set method=mpm --set analysis.transfer=thesis
+  flies --set "stages[1].bodies=[{name: $who, absent: false}]" --set method=mpm --set 'analysis={type: explicit, end: 0.02, step: 0.002}'
+done
+# Where a body goes inertia is known to those that remember accelerations.
+flies --set 'stages[1].bodies=[{name: s, absent: true}]'
+flies --set 'stages[1].bodies=[{name: s, absent: true}]' --set method=mpm --set analysis.transfer=thesis
+
+# A body of fem that comes with another run falls from its first step on, though walls stand somewhere.
+sed -e '/^stages/d; s/^loads.*//; s/, absent: true//; /name: b/d; s/of: {body: b}/of: {body: s}/' flies.yaml >stood.yaml
+sed -e '/^stages/,$d; s/, absent: true//; /name: b/d; s/of: {body: b}/of: {body: l}/' flies.yaml >falls_late.yaml
+echo 'initial: {run: stood}' >>falls_late.yaml
+for file in stood falls_late; do echo 'walls: [{name: w, shape: {half-space: {point: [0, -1], normal: [0, 1]}}}]' >>$file.yaml; done
+sed -i '/name: l,/d' stood.yaml
+for ranks in 1 2; do
+  expect "what stood, on $ranks" 0 on_ranks $ranks "$talus" run stood.yaml --out stood --force --quiet
+  expect "what falls beside it, on $ranks" 0 on_ranks $ranks "$talus" run falls_late.yaml --out falls_late --force --quiet
+  awk -F, 'NR > 1 && ($3 + 2500 * $1) ^ 2 > 1e-8 { bad = 1 } END { exit bad || NR < 9 }' falls_late/history.csv || fail "$name: $(cut -d, -f1,3- falls_late/history.csv)"
+done
+
 # So does what another run hands over: what falls has the way of gravity from its first step on, what is let go its momentum.
 (sed '/^stages/,$d' drop.yaml && echo 'initial: {run: flight}
 loads: {gravity: [0, -10]}') | sed 's/end: 0.04/end: 0.1/; s/, velocity: \[0, 1\]//' >goes.yaml

@@ -1,12 +1,14 @@
 /* What the last step of statics leaves out of balance, once points have moved and give other nodes what they bear. The
- * next step takes it in, whether a stage ends between them or not (docs/theory.md, "Stages"). */
+ * next step takes it in, whether a stage ends between them or not (docs/theory.md, "Stages"). And what is out of
+ * balance in dynamics, since it accelerates: a stage that releases something holds what it changes, and no inertia. */
 #include "grid/cloud/cloud.h"
 #include "grid/search/directory.h"
 #include "model/stage/stage_private.h"
 
 PetscBool remainder_goes_on(const Case *c, const Case *from)
 {
-  return (PetscBool)(from->analysis.type == ANALYSIS_STATIC && case_is_static(&c->analysis));
+  if (from->analysis.type == ANALYSIS_STATIC) return case_is_static(&c->analysis);
+  return (PetscBool)(c->release > 0 && !case_is_static(&from->analysis) && !case_is_static(&c->analysis));
 }
 
 static NodalField field_of(const Model *m)
@@ -76,8 +78,15 @@ static PetscErrorCode SumUp(const Model *m, PetscReal *all)
   PetscFunctionReturn(0);
 }
 
+/* What nodes lack by the acceleration that they have, of owned nodes. */
+static void take_inertia(Model *m)
+{
+  for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
+    m->remainder[i] = -m->nodes->mass[i / m->dim] * m->nodes->a[i];
+}
+
 /* Where a body goes nobody can tell what it leaves from what the others do: nodes are of both, and neither part would
- * be in balance. There all is held. */
+ * be in balance. There all is held, but for inertia where points or nodes remember it. */
 PetscErrorCode RemainderTo(Model *m, const Case *from, const Tables *tables, PetscReal *held)
 {
   char reason[256] = "";
@@ -90,8 +99,9 @@ PetscErrorCode RemainderTo(Model *m, const Case *from, const Tables *tables, Pet
     PetscCall(NodesFromTable(m->grid, PETSC_FALSE, 1, &field, tables_find(tables, "remainder"), reason));
   PetscCheck(!reason[0], m->comm, PETSC_ERR_PLIB, "%s", reason);
   if (!some_go(m->c, from)) PetscFunctionReturn(0);
-  PetscCall(SumUp(m, held));
+  if (case_is_static(&m->c->analysis)) PetscCall(SumUp(m, held));
   PetscCall(PetscArrayzero(m->remainder, m->grid->n_nodes * m->dim));
+  if (m->scheme->inertia && inertia_is_known(m, from)) take_inertia(m);
   PetscFunctionReturn(0);
 }
 

@@ -69,6 +69,9 @@ PetscErrorCode JumpExpect(Model *model);
 PetscErrorCode JumpTo(Model *model, const Case *from, const Tables *tables, char reason[256]);
 /* motion/bring.c. Collective. Nodes of fem that bodies come to get the velocities that these bring. */
 PetscErrorCode BodiesBringMotion(Model *model, const Case *from);
+/* Collective. And where nothing tells how accelerations jump, since the model of the run before is not at hand, those that
+ * are theirs alone begin with what balances them. */
+PetscErrorCode BodiesBeginAcceleration(Model *model, const Case *from);
 /* Of values of all nodes, those of this rank's nodes that no boundary holds; the others become 0. */
 void keep_free(const Model *model, PetscReal *values);
 /* Of values of this rank's nodes, those that a boundary holds where material reaches; the others become 0. */
@@ -78,7 +81,8 @@ PetscErrorCode HoldImbalance(Model *model, const Case *from, Imbalance *imbalanc
 /* Collective. Residual of the state as it is, also where nodes are held: what is missing to balance, n_nodes x dim, of
  * owned nodes, N. */
 PetscErrorCode Residual(Model *model, PetscReal *residual);
-/* remainder.c. Do both stages rest, so that the first step of c takes in what the last one of `from` has left? */
+/* remainder.c. Do both stages rest, so that the first step of c takes in what the last one of `from` has left; or move,
+ * and does c release something, of which what accelerates already is none? */
 PetscBool remainder_goes_on(const Case *c, const Case *from);
 /* Collective. Before its tables are made: what the last state of the stage before leaves out of balance goes to them,
  * or with the nodes of its cloud. */
@@ -88,6 +92,8 @@ PetscErrorCode RemainderFrom(Model *before, Tables *tables);
 PetscErrorCode RemainderExpect(Model *model);
 PetscErrorCode RemainderTo(Model *model, const Case *from, const Tables *tables, PetscReal *held);
 PetscErrorCode RemainderForget(Model *model);
-/* taken_over.c. Collective. Contact points that touch and bear nothing bear from now on what free nodes lack, as far as
+/* taken_over.c. Is it known what of the forces that lack is inertia? */
+PetscBool inertia_is_known(const Model *model, const Case *from);
+/* Collective. Contact points that touch and bear nothing bear from now on what free nodes lack, as far as
  * their law does. residual: n_nodes x dim, N, of owned nodes; taken: does it count no more as it is? */
 PetscErrorCode ContactTakesOver(const Model *model, const Case *from, const PetscReal *residual, PetscBool *taken);

@@ -62,7 +62,8 @@ static PetscBool asks_more(const Model *m, const Case *from)
 {
   const PetscBool parts = (PetscBool)(m->method->restores_grid || m->method->clouds);
   if (strcmp(m->c->method, from->method) || !acts_by_case(m, from)) return PETSC_FALSE;
-  return (PetscBool)((parts && remainder_goes_on(m->c, from)) || accelerations_go_on(m->c, from));
+  const PetscBool left = (PetscBool)((parts || !case_is_static(&m->c->analysis)) && remainder_goes_on(m->c, from));
+  return (PetscBool)(left || accelerations_go_on(m->c, from));
 }
 
 PetscErrorCode ModelTakeRun(Model *m, Tables **tables, const Case *from, Diag *diag, Imbalance *imbalance)

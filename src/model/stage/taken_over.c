@@ -4,8 +4,8 @@
 
 #define REACHES 0.05 /* a function of less on the surface is one of nodes beside it */
 
-/* Is it known what of the forces that lack is inertia? Springs of explicit dynamics take nothing over. */
-static PetscBool inertia_is_known(const Model *m, const Case *from)
+/* Springs of explicit dynamics take nothing over. */
+PetscBool inertia_is_known(const Model *m, const Case *from)
 {
   const TimeScheme *before = time_scheme_of(&from->analysis);
   if (m->c->analysis.type == ANALYSIS_EXPLICIT) return PETSC_FALSE;
@@ -16,9 +16,11 @@ static PetscBool inertia_is_known(const Model *m, const Case *from)
 /* What free nodes lack for the acceleration that they have, N: n_nodes x dim, on all copies. */
 static PetscErrorCode FindLacks(const Model *m, const PetscReal *residual, PetscReal *lacks)
 {
+  const PetscBool lacks_inertia = (PetscBool)(m->scheme->inertia && !m->remainder); /* else it is out of them */
+
   PetscFunctionBeginUser;
   for (PetscInt i = 0; i < m->grid->n_owned * m->dim; ++i)
-    lacks[i] = residual[i] + (m->scheme->inertia ? m->nodes->mass[i / m->dim] * m->nodes->a[i] : 0);
+    lacks[i] = residual[i] + (lacks_inertia ? m->nodes->mass[i / m->dim] * m->nodes->a[i] : 0);
   keep_free(m, lacks);
   PetscCall(GridToGhosts(m->grid, m->dim, lacks));
   PetscFunctionReturn(0);

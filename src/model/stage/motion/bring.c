@@ -87,3 +87,27 @@ PetscErrorCode BodiesBringMotion(Model *m, const Case *from)
   PetscCall(PetscFree(brought));
   PetscFunctionReturn(0);
 }
+
+PetscErrorCode BodiesBeginAcceleration(Model *m, const Case *from)
+{
+  NodalFields *n = m->nodes;
+  const PetscInt dim = m->dim, dofs = m->grid->n_nodes * dim;
+  PetscReal *brought, *a, *lacks, size;
+
+  PetscFunctionBeginUser;
+  if (m->balanced || m->method->restores_grid || m->method->clouds) PetscFunctionReturn(0);
+  if (!accelerations_go_on(m->c, from)) PetscFunctionReturn(0);
+  PetscCall(PetscCalloc1(m->grid->n_nodes * (1 + dim), &brought));
+  PetscCall(PetscMalloc2(dofs, &a, dofs, &lacks));
+  PetscCall(SumBrought(m, from, brought));
+  PetscCall(BalancedAcceleration(m, a, lacks, &size));
+  for (PetscInt i = 0; i < m->grid->n_owned * dim; ++i) {
+    const PetscReal brings = brought[i / dim * (1 + dim)], mass = n->mass[i / dim];
+    if (brings > 0 && mass - brings <= ALONE * mass) n->a[i] = a[i];
+  }
+  PetscCall(GridToGhosts(m->grid, dim, n->a));
+  PetscCall(PetscArraycpy(n->a_points, n->a, dofs));
+  PetscCall(PetscFree2(a, lacks));
+  PetscCall(PetscFree(brought));
+  PetscFunctionReturn(0);
+}

@@ -52,6 +52,7 @@ PetscErrorCode BeginAcceleration(Model *m, const Case *from, const Tables *table
   PetscFunctionBeginUser;
   if (m->scheme->inertia && begins_anew(m, from)) PetscCall(InitialAcceleration(m));
   if (m->balanced) PetscCall(JumpTo(m, from, tables, reason));
+  else PetscCall(BodiesBeginAcceleration(m, from));
   PetscCheck(!reason[0], m->comm, PETSC_ERR_PLIB, "%s", reason);
   PetscFunctionReturn(0);
 }
