@@ -69,8 +69,8 @@ PetscErrorCode JumpExpect(Model *model);
 PetscErrorCode JumpTo(Model *model, const Case *from, const Tables *tables, char reason[256]);
 /* motion/bring.c. Collective. Nodes of fem that bodies come to get the velocities that these bring. */
 PetscErrorCode BodiesBringMotion(Model *model, const Case *from);
-/* Collective. And where nothing tells how accelerations jump, since the model of the run before is not at hand, those that
- * are theirs alone begin with what balances them. */
+/* Collective. And where nothing tells how accelerations jump, since the model of the run before is not at hand, those
+ * that are theirs alone begin with what balances them. */
 PetscErrorCode BodiesBeginAcceleration(Model *model, const Case *from);
 /* Of values of all nodes, those of this rank's nodes that no boundary holds; the others become 0. */
 void keep_free(const Model *model, PetscReal *values);

@@ -101,8 +101,8 @@ static PetscErrorCode Subtract(const Model *m, PetscReal *given, PetscReal *lack
   PetscFunctionReturn(0);
 }
 
-/* What has just been bonded, and moves, is stopped by the step, and by no impulse before that: it counts as what slides,
- * whatever it bears (contact/bonds.c). */
+/* What has just been bonded, and moves, is stopped by the step, and by no impulse before that: it counts as what
+ * slides, whatever it bears (contact/bonds.c). */
 static void stay_new(const Model *m, ContactState was, ContactPoint *c)
 {
   if (m->scheme->inertia && c->law.kind == CONTACT_BONDED && was == CONTACT_SLIDES) c->before = CONTACT_SLIDES;
