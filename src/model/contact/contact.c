@@ -202,6 +202,7 @@ PetscErrorCode ContactHold(Model *m, PetscReal dt, PetscReal inertia)
   share.leaves = left_deep(m, dt);
   /* no time passes where an equilibrium is sought: walls stand still */
   contact_prepare(m->contact, m->time, m->initial.seeking ? 0 : dt, inertia, share);
+  if (case_has_contact(m->c, CONTACT_BONDED)) PetscCall(ContactFindAlone(m->contact, m->grid, m->method->clouds));
   contact_find_held(m->contact, m->boundary->fixed, m->nodes->prescribed, &m->boundary->frames);
   for (RigidWall *b = m->contact->rigid; b < m->contact->rigid + m->contact->n_rigid; ++b)
     rigid_begin(b, m->walls, m->c, m->time, dt, share_of_force(m).mean, m->scheme->middle);

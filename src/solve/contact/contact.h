@@ -164,6 +164,9 @@ PetscErrorCode ContactFind(Contact *contact, const NodalScene *scene);
 void contact_stand(Contact *contact, PetscReal share);
 /* Before the solve of a step of dt: penalties, and how walls move. inertia: see WeakFormInput. */
 void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia, ContactShare share);
+/* contact_alone.c. Collective. Then: how far penalties of what is bonded may rise (ContactPoint.stiffest). wide: do
+ * functions reach farther than to the nodes of a cell? */
+PetscErrorCode ContactFindAlone(Contact *contact, const Grid *grid, PetscBool wide);
 /* contact_held.c. Then: what cannot follow a wall. Flags in the frames of nodes, increments of the step, m. */
 void contact_find_held(Contact *contact, const unsigned char *fixed, const PetscReal *prescribed, const Frames *frames);
 /* Where the wall's matter goes by `way`, by how much it has passed the point at the end of the step, m; let: what of

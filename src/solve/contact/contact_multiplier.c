@@ -42,7 +42,8 @@
 #define FALLS 10
 /* Of what rubs it rises so many times where it must: a slip that stays of what sticks does work. Where nothing but a
  * gap stays it is left as it is: which of more points than nodes can follow bear the force is nobody's choice, and a
- * higher penalty takes some of them away; what is bonded all points would lock. */
+ * higher penalty takes some of them away; what is bonded all points would lock, but where one is alone at a node:
+ * contact_alone.c. */
 #define RUBS 10
 #define HIGHER 1.01 /* a penalty that could rise by less has risen: moduli that are alike differ by round-off */
 
@@ -300,7 +301,8 @@ static PetscErrorCode LendAgain(Contact *s, const Grid *grid, PetscBool *again)
 /* The largest of all points and ranks: */
 enum {
   OF_GAPS,        /* and of slips of what does not rub, m */
-  OF_SOFT,        /* gaps and slips of what may be stiffened, m */
+  OF_SOFT,        /* gaps and slips of what may be stiffened, m, */
+  OF_BONDS,       /* of that those of what is bonded */
   OF_MOTIONS,     /* motion_of, m */
   OF_STALLED,     /* stalled_of, m */
   OF_SLIPS,       /* of what rubs, m */
@@ -332,6 +334,7 @@ static PetscErrorCode LookAt(const Contact *s, const NodalScene *scene, PetscInt
     w[OF_GAPS] = PetscMax(w[OF_GAPS], rubs ? gap_of(c) : left);
     w[OF_SLIPS] = PetscMax(w[OF_SLIPS], rubs ? slip_of(c) : 0);
     if (is_soft(c, left)) w[OF_SOFT] = PetscMax(w[OF_SOFT], left);
+    if (is_soft(c, left) && c->law.kind == CONTACT_BONDED) w[OF_BONDS] = PetscMax(w[OF_BONDS], left);
     w[OF_MOTIONS] = PetscMax(w[OF_MOTIONS], motion_of(c));
     w[OF_STALLED] = PetscMax(w[OF_STALLED], stalled_of(c, change, left));
     w[travels] = PetscMax(w[travels], travel_of(s, c, scene));
@@ -374,10 +377,12 @@ PetscErrorCode ContactAugment(void *data, const NodalScene *scene, PetscInt chan
   s->begins = most[WAS_IN_CONTACT] == 0;
   const PetscReal all = PetscMax(most[OF_GAPS], most[OF_SLIPS]);
   const PetscReal closed = s->begins ? s->share.asked * closed_by(s, change, most[OF_PRESSED]) : CLOSED * s->length;
-  const PetscBool slow = change > 0 && all > STALLS * s->worst, soft = most[OF_SOFT] > closed;
+  const PetscReal asked = allowed(s, change, most, 1);
+  /* a bond that could close what its step asks for would go on with it */
+  const PetscBool soft = most[OF_SOFT] > closed || most[OF_BONDS] > asked;
+  const PetscBool slow = change > 0 && all > STALLS * s->worst;
   const PetscBool stalls = slow && !soft && most[OF_STALLED] <= ALLOWED * s->length;
-  const PetscBool stay =
-    most[OF_GAPS] <= allowed(s, change, most, 1) && most[OF_SLIPS] <= allowed(s, change, most, SLIPS);
+  const PetscBool stay = most[OF_GAPS] <= asked && most[OF_SLIPS] <= allowed(s, change, most, SLIPS);
   *again = !stay && change < MOST_CHANGES && !stalls;
   s->worst = all;
   if (s->adheres && change < TRIES) PetscCall(LendAgain(s, scene->grid, again));
