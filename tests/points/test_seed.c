@@ -610,22 +610,23 @@ static void skew_corners_know_both_sides(void **state)
   for (int k = 0; k < 2; ++k) {
     const PetscReal *x = cell[k];
     unsigned char outer[4];
-    PetscReal area[3], position[3], corner[3];
+    PetscReal normal[3], position[3], corner[3];
     PetscInt q = 0;
     for (PetscInt side = 0; side < 4; ++side) {
-      cell_side_area(CELL_QUADRILATERAL, side, x, area);
-      outer[side] = area[0] < -0.5 || area[1] < -0.5;
+      cell_side_normal(CELL_QUADRILATERAL, side, x, normal);
+      outer[side] = normal[0] < -0.5 || normal[1] < -0.5;
     }
     while (rule.xi[2 * q] > 0 || rule.xi[2 * q + 1] > 0) ++q;
     cell_position(CELL_QUADRILATERAL, x, rule.xi + 2 * q, position);
     const PetscReal reach = seed_reach(CELL_QUADRILATERAL, x, position, 0.25, &rule, q, outer);
-    seed_corner(CELL_QUADRILATERAL, x, position, &rule, q, outer, corner);
+    seed_corner(CELL_QUADRILATERAL, x, position, &rule, q, outer, corner, NULL);
     for (PetscInt side = 0; side < 4; ++side) {
       if (!outer[side]) continue;
-      cell_side_area(CELL_QUADRILATERAL, side, x, area);
-      const PetscReal size = PetscSqrtReal(area[0] * area[0] + area[1] * area[1]);
-      const PetscReal wanted = -(area[0] * position[0] + area[1] * position[1]) / size; /* both go through the origin */
-      CHECK_CLOSE(PetscMax(reach, (corner[0] * area[0] + corner[1] * area[1]) / size), wanted, 1e-12);
+      cell_side_normal(CELL_QUADRILATERAL, side, x, normal);
+      const PetscReal size = PetscSqrtReal(normal[0] * normal[0] + normal[1] * normal[1]);
+      const PetscReal wanted =
+        -(normal[0] * position[0] + normal[1] * position[1]) / size; /* both go through the origin */
+      CHECK_CLOSE(PetscMax(reach, (corner[0] * normal[0] + corner[1] * normal[1]) / size), wanted, 1e-12);
     }
   }
 }
