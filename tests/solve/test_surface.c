@@ -265,7 +265,7 @@ static void test_trough(void **state)
     }
 }
 
-/* A block of cells of so many metres a side, each with the four points of Gauss's rule, as meshes of them are seeded. */
+/* A block of cells of so many metres a side, each with the four points of Gauss's rule, as meshes are seeded. */
 static void add_cells(Body *b, PetscReal angle, const PetscReal *low, const int *n, const PetscReal *side)
 {
   const PetscReal c = PetscCosReal(angle), s = PetscSinReal(angle), gauss = 0.5 - 0.5 / PetscSqrtReal(3);

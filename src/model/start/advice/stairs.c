@@ -18,8 +18,8 @@ static PetscBool is_of_cells(const Model *m, PetscInt b)
                      !body_fills_shape(body, m->method->restores_grid));
 }
 
-/* Does the surface of the shape before point p lie aslant of the axes? It is asked a cell behind the point, which may be
- * outside of the shape itself. */
+/* Does the surface of the shape before point p lie aslant of the axes? It is asked a cell behind the point, which may
+ * be outside of the shape itself. */
 static PetscBool slants_before(const Model *m, const Shape *shape, const SurfacePoint *p)
 {
   const PetscReal *beside = point_real(m->points, POINT_BESIDE, p->owner), h = m->grid->smallest, most = FARTHEST * h;

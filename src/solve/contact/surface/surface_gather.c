@@ -60,9 +60,9 @@ static void take_face(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
   }
 }
 
-/* The sides that a point stands beside. As far from the nearest one as the point is, its disk touches that alone: beside
- * a corner of cells that are taller than wide it would hang before the face that its neighbours lie on, which hulls then
- * took for a slope. Where the surface cuts cells only a corner says how far it is. */
+/* The sides that a point stands beside. As far from the nearest one as the point is, its disk touches that alone:
+ * beside a corner of cells that are taller than wide it would hang before the face that its neighbours lie on, which
+ * hulls then took for a slope. Where the surface cuts cells only a corner says how far it is. */
 static void take_sides(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
 {
   const Points *points = in->points;
