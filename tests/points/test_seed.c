@@ -613,7 +613,7 @@ static void skew_corners_know_both_sides(void **state)
     PetscReal normal[3], position[3], corner[3];
     PetscInt q = 0;
     for (PetscInt side = 0; side < 4; ++side) {
-      cell_side_normal(CELL_QUADRILATERAL, side, x, normal);
+      cell_side_area(CELL_QUADRILATERAL, side, x, normal);
       outer[side] = normal[0] < -0.5 || normal[1] < -0.5;
     }
     while (rule.xi[2 * q] > 0 || rule.xi[2 * q + 1] > 0) ++q;
@@ -622,7 +622,7 @@ static void skew_corners_know_both_sides(void **state)
     seed_corner(CELL_QUADRILATERAL, x, position, &rule, q, outer, corner, NULL);
     for (PetscInt side = 0; side < 4; ++side) {
       if (!outer[side]) continue;
-      cell_side_normal(CELL_QUADRILATERAL, side, x, normal);
+      cell_side_area(CELL_QUADRILATERAL, side, x, normal);
       const PetscReal size = PetscSqrtReal(normal[0] * normal[0] + normal[1] * normal[1]);
       const PetscReal wanted =
         -(normal[0] * position[0] + normal[1] * position[1]) / size; /* both go through the origin */

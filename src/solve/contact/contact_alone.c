@@ -9,12 +9,20 @@
  * pushed back by what such a point has to bear. */
 #include "solve/contact/contact.h"
 
-#define ALONE 0.9   /* of what all points together oppose to the node: one in the plane, */
-#define IN_A_ROW 2  /* and in space two that face each other along the wall's edge */
-#define FEELS 100   /* times its usual penalty a node may feel from that point; of a whole foot it feels 0.3 to 1.8 */
-#define BESIDE 0.2  /* of what opposes to a node: such points hold it where the others push it; */
-#define WIDE 0.05   /* functions of clouds reach farther, and share that among more points */
-#define HIGHEST 1e4 /* by more no penalty rises: of nodes with a hundredth of their function nothing is asked */
+#define ALONE 0.9  /* of what all points together oppose to the node: one in the plane, */
+#define IN_A_ROW 2 /* and in space two that face each other along the wall's edge */
+#define HARDLY 0.3 /* of the usual penalty: less does a node feel there than of a whole foot, which is up to 1.8; */
+#define FEELS 100  /* times the usual penalty it may feel from that point then */
+
+/* beside: of what opposes to a node: points that oppose so much hold it where others push it. highest: by more no
+ * penalty rises, and nothing is asked of nodes with less than its inverse of the square of a function. */
+typedef struct {
+  PetscReal beside, highest;
+} Bounds;
+
+/* Clouds reach farther than to the nodes of a cell, and share what holds a node among more points. They are others in
+ * the next step, too, and make energy of what penalties of points that hardly reach a node have held there. */
+static const Bounds of_cells = {.beside = 0.2, .highest = 1e4}, of_clouds = {.beside = 0.05, .highest = 100};
 
 static PetscReal opposed(const ContactPoint *c, PetscReal N) { return c->law.penalty * N * N; }
 
@@ -34,51 +42,52 @@ static void oppose(const Contact *s, PetscReal *all)
 }
 
 /* By how much more than its penalty that of a point may rise where it is alone. */
-static PetscReal rises_alone(const Contact *s, const ContactPoint *c, const PetscReal *all)
+static PetscReal rises_alone(const Contact *s, const ContactPoint *c, Bounds bounds, const PetscReal *all)
 {
   const PetscReal alone = s->dim == 3 ? ALONE / IN_A_ROW : ALONE;
   PetscReal most = 0;
   for (PetscInt e = c->first; e < c->first + c->n && c->law.kind == CONTACT_BONDED; ++e) {
     const PetscReal square = s->N[e] * s->N[e];
-    if (square * HIGHEST >= 1 && opposed(c, s->N[e]) >= alone * all[s->node[e]]) most = PetscMax(most, FEELS / square);
+    if (square * bounds.highest < 1 || all[s->node[e]] > HARDLY * c->law.penalty) continue;
+    if (opposed(c, s->N[e]) >= alone * all[s->node[e]]) most = PetscMax(most, FEELS / square);
   }
   return most;
 }
 
 /* It tells the nodes that it holds. */
-static void tell_nodes(const Contact *s, PetscReal beside, const PetscReal *all, PetscReal *times)
+static void tell_nodes(const Contact *s, Bounds bounds, const PetscReal *all, PetscReal *times)
 {
   for (const ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    const PetscReal more = rises_alone(s, c, all);
+    const PetscReal more = rises_alone(s, c, bounds, all);
     for (PetscInt e = c->first; e < c->first + c->n && more > 0; ++e)
-      if (opposed(c, s->N[e]) >= beside * all[s->node[e]]) times[s->node[e]] += more;
+      if (opposed(c, s->N[e]) >= bounds.beside * all[s->node[e]]) times[s->node[e]] += more;
   }
 }
 
 /* And they what else holds them. */
-static PetscReal rises(const Contact *s, const ContactPoint *c, PetscReal beside, const PetscReal *all,
+static PetscReal rises(const Contact *s, const ContactPoint *c, Bounds bounds, const PetscReal *all,
                        const PetscReal *times)
 {
   PetscReal most = 1;
   for (PetscInt e = c->first; e < c->first + c->n; ++e)
-    if (opposed(c, s->N[e]) >= beside * all[s->node[e]]) most = PetscMax(most, times[s->node[e]]);
-  return PetscMin(most, HIGHEST);
+    if (opposed(c, s->N[e]) >= bounds.beside * all[s->node[e]]) most = PetscMax(most, times[s->node[e]]);
+  return PetscMin(most, bounds.highest);
 }
 
 PetscErrorCode ContactFindAlone(Contact *s, const Grid *grid, PetscBool wide)
 {
-  const PetscReal beside = wide ? WIDE : BESIDE;
+  const Bounds bounds = wide ? of_clouds : of_cells;
   PetscReal *all, *times;
 
   PetscFunctionBeginUser;
   PetscCall(PetscCalloc2(grid->n_nodes, &all, grid->n_nodes, &times));
   oppose(s, all);
   PetscCall(SumAtNodes(grid, all));
-  tell_nodes(s, beside, all, times);
+  tell_nodes(s, bounds, all, times);
   PetscCall(SumAtNodes(grid, times));
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c)
     if (c->law.kind == CONTACT_BONDED)
-      c->stiffest = PetscMax(c->stiffest, rises(s, c, beside, all, times) * c->law.penalty);
+      c->stiffest = PetscMax(c->stiffest, rises(s, c, bounds, all, times) * c->law.penalty);
   PetscCall(PetscFree2(all, times));
   PetscFunctionReturn(0);
 }
