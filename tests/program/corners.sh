@@ -165,7 +165,7 @@ left_of() {
 left_of "a corner along a side" 440 1
 left_of "a corner along a side, 2 ranks" 440 2
 left_of "a corner along a side, half the step" 440 1 --set analysis.step=5e-4
-left_of "a corner along a side, mpm" 440 1 --set method=mpm --set "$wide" \
+left_of "a corner along a side, mpm" 436 1 --set method=mpm --set "$wide" \
   --set analysis.transfer=consistent --set analysis.step=5e-4
 left_of "a corner along a side, its body first" 480 1 --set 'interfaces[0].between=[soft, stiff]'
 
