@@ -224,8 +224,8 @@ static PetscBool is_side(PetscInt dim, const SurfacePoint *p, const SurfacePair 
   return (PetscBool)(farther > PetscMin(gap, 0) - DEEPER * p->own);
 }
 
-/* How many times as wide along the surface as it is deep the part of a point is, if that is flat; 1: it is not, or has no
- * surface of its own. */
+/* How many times as wide along the surface as it is deep the part of a point is, if that is flat; 1: it is not, or has
+ * no surface of its own. */
 static PetscReal flatness(PetscInt dim, const SurfacePoint *p)
 {
   const PetscReal square = vector_dot(p->face, p->face), part = dim == 2 ? PetscSqr(p->own) : p->own * p->own * p->own;
