@@ -27,6 +27,7 @@ typedef struct {
   PetscReal size;
   PetscReal own;     /* that of its part, cut or not, m */
   PetscReal face[3]; /* of the body's surface, as a vector outwards, m2 (in the plane m); 0: it knows of none */
+  PetscReal flat;    /* how many times as wide along its surface as it is deep, if that is flat; else 0 */
   PetscReal modulus, density; /* of its material, Pa, kg/m3 */
   PetscReal stiffer, softer;  /* see ContactPoint */
   PetscInt row[2];            /* where it stands among those of its body: see surface_sort */

@@ -6,6 +6,7 @@
 #include "solve/contact/surface/surface.h"
 
 #define CUT 0.99    /* of the size of a whole part: round-off cuts nothing */
+#define FLAT 1.5    /* times as wide as deep: of less a cell around a point has its neighbours */
 #define SEVERAL 1.5 /* square of the sum of unit normals: 1 of one side, 2 or 3 of those at right angles */
 #define TORN 0.5    /* strain beyond which nobody knows where a surface looks */
 
@@ -60,10 +61,18 @@ static void take_face(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
   }
 }
 
+/* The part of a whole cell is as wide along the surface as what it was given of that, and as deep as its volume has it. */
+static void take_flatness(PetscInt dim, SurfacePoint *s)
+{
+  const PetscReal square = vector_dot(s->face, s->face), part = PetscPowRealInt(s->own, dim);
+  const PetscReal flat = (dim == 2 ? square : PetscPowReal(square, 0.75)) / part;
+  if (flat > FLAT) s->flat = flat;
+}
+
 /* The sides that a point stands beside. As far from the nearest one as the point is, its disk touches that alone:
  * beside a corner of cells that are taller than wide it would hang before the face that its neighbours lie on, which
- * hulls then took for a slope. Where the surface cuts cells only a corner says how far it is. */
-static void take_sides(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
+ * hulls then took for a slope. Where the surface cuts cells only a corner says how far it is: PETSC_FALSE. */
+static PetscBool take_sides(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
 {
   const Points *points = in->points;
   const PetscInt dim = points->components[POINT_BESIDE];
@@ -71,9 +80,11 @@ static void take_sides(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
   PetscReal sides = 0;
   for (PetscInt d = 0; d < dim; ++d) sides += PetscSqr(beside[d]);
   s->bent = (PetscBool)(sides == 0 ? vector_dot(s->corner, s->corner) > 0 : sides > SEVERAL);
-  if (sides == 0 || (in->materials[points->material[p]].law->yields && contact_is_strained(points, p, TORN))) return;
+  if (sides == 0 || (in->materials[points->material[p]].law->yields && contact_is_strained(points, p, TORN)))
+    return PETSC_FALSE;
   for (int i = 0; i < 3; ++i)
     for (PetscInt d = 0; d < dim; ++d) s->shift[i] += F[3 * i + d] * (s->corner[d] - s->first * beside[d]);
+  return PETSC_TRUE;
 }
 
 static void describe(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
@@ -97,9 +108,10 @@ static void describe(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
   s->reach = s->first * (points->dim == 2 ? PetscSqrtReal(J / s->F[8]) : PetscCbrtReal(J));
   s->size = points->dim == 2 ? PetscSqrtReal(volume / weight) : PetscCbrtReal(volume);
   s->own = s->size;
-  take_sides(in, p, s);
+  const PetscBool of_cell = take_sides(in, p, s);
   take_face(in, p, s);
   if (vector_dot(s->face, s->face) == 0) return;
+  if (of_cell) take_flatness(points->dim, s);
   const PetscReal whole = J * uncut(in, p), side = points->dim == 2 ? PetscSqrtReal(whole) : PetscCbrtReal(whole);
   if (s->size < CUT * side) s->size = side;
 }

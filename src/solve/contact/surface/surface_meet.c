@@ -16,7 +16,6 @@
 #define BEHIND 0.375      /* of two points' size: so far aside one still stands before the other: 0.71 at an edge, */
 #define BEHIND_SPACE 0.42 /* and 0.82 at a corner of space */
 #define SQUARE 1e-4       /* 1 - cosine: a surface looks along n */
-#define FLAT_PART 1.5     /* times as wide as deep: of less a cell around a point has its neighbours */
 #define STRAIGHT 1.4      /* of half of what a point was given: its middle is at most a sixth off that of its part */
 #define A_LITTLE (1 + 1e-9)
 #define PASSES_SPACE 2 /* towards a side: of neighbours alone few see one of space whole */
@@ -224,15 +223,6 @@ static PetscBool is_side(PetscInt dim, const SurfacePoint *p, const SurfacePair 
   return (PetscBool)(farther > PetscMin(gap, 0) - DEEPER * p->own);
 }
 
-/* How many times as wide along the surface as it is deep the part of a point is, if that is flat; 1: it is not, or has
- * no surface of its own. */
-static PetscReal flatness(PetscInt dim, const SurfacePoint *p)
-{
-  const PetscReal square = vector_dot(p->face, p->face), part = dim == 2 ? PetscSqr(p->own) : p->own * p->own * p->own;
-  const PetscReal flat = dim == 2 ? square / part : PetscPowReal(square, 0.75) / part;
-  return flat > FLAT_PART ? flat : 1;
-}
-
 PetscBool surface_meet(const Surface *a, const SurfacePoint *p, const Surface *b, PetscReal h, SurfacePair *pair)
 {
   Part mine, theirs;
@@ -241,7 +231,7 @@ PetscBool surface_meet(const Surface *a, const SurfacePoint *p, const Surface *b
   PetscReal least, gap = 0, farther;
   const SurfacePoint *q = nearest_of(b, p, h, &least);
   if (!q) return PETSC_FALSE;
-  const PetscReal far = h * PetscMax(flatness(a->dim, p), flatness(a->dim, q));
+  const PetscReal far = h * PetscMax(1, PetscMax(p->flat, q->flat));
   part_around(a, q->x, least + far, &mine);
   part_around(b, p->x, least + far, &theirs);
   for (int i = 0; i < 3 && least > 0; ++i) way.n[i] = (p->x[i] - q->x[i]) / least;
