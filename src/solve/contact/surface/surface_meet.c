@@ -205,12 +205,22 @@ static PetscBool meet_way(const SurfacePoint *p, const Part *mine, const Part *t
   return PETSC_TRUE;
 }
 
+/* Does all surface that is known of a part look along n, as that of a round body does at a single point alone? */
+static PetscBool is_plane(const Part *part, const PetscReal n[3])
+{
+  for (PetscInt k = 0; k < part->n; ++k) {
+    const SurfacePoint *q = part->point[k];
+    if (!q->bent && vector_dot(q->face, q->face) > 0 && plane_width(part->dim, q, n) == 0) return PETSC_FALSE;
+  }
+  return PETSC_TRUE;
+}
+
 /* Does a way lean from the plane surface that it meets, across which that between hulls is? Then it is across no side:
  * it is that from points beside a corner of the first body, which look elsewhere. */
-static PetscBool leans(PetscInt dim, const PetscReal whole[3], const SurfacePair *side)
+static PetscBool leans(const Part *theirs, const PetscReal whole[3], const SurfacePair *side)
 {
-  return (PetscBool)(!side->other->bent && plane_width(dim, side->other, whole) > 0 &&
-                     vector_dot(whole, side->normal) < 1 - SQUARE);
+  if (side->other->bent || !(vector_dot(whole, side->normal) < 1 - SQUARE)) return PETSC_FALSE;
+  return (PetscBool)(plane_width(theirs->dim, side->other, whole) > 0 && is_plane(theirs, whole));
 }
 
 /* Is the way that was found anew, with its gap, better than that between hulls? Not if a block would be deeper in it by
@@ -239,7 +249,7 @@ PetscBool surface_meet(const Surface *a, const SurfacePoint *p, const Surface *b
   hull_face(&mine, &theirs, 0.5 * (p->own + q->own), n);
   PetscBool meets = meet_way(p, &mine, &theirs, n, pair, &gap);
   if (take_side(p, &mine, q, &theirs, n, &way) && meet_way(p, &mine, &way.theirs, way.n, &other, &farther))
-    if (!leans(a->dim, n, &other) && (!meets || is_side(a->dim, p, pair, gap, &other, farther)))
+    if (!leans(&theirs, n, &other) && (!meets || is_side(a->dim, p, pair, gap, &other, farther)))
       *pair = other, meets = PETSC_TRUE;
   if (!meets) return PETSC_FALSE;
   pair->cover = surface_cover(a, p, b, pair);
