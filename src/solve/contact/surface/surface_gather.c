@@ -61,7 +61,7 @@ static void take_face(const SurfaceInput *in, PetscInt p, SurfacePoint *s)
   }
 }
 
-/* A part of a whole cell is as wide along the surface as what it was given of that, and as deep as its volume has it. */
+/* A part of a whole cell is as wide along the surface as what it was given of that, as deep as its volume has it. */
 static void take_flatness(PetscInt dim, SurfacePoint *s)
 {
   const PetscReal square = vector_dot(s->face, s->face), part = PetscPowRealInt(s->own, dim);
