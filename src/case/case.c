@@ -356,3 +356,10 @@ PetscBool case_load_follows(const Case *c)
     if (c->loads[k].kind == LOAD_PRESSURE && load_pushes(c->loads + k)) return PETSC_TRUE;
   return PETSC_FALSE;
 }
+
+PetscBool case_wall_meets(const WallSpec *wall, const char *body)
+{
+  for (PetscInt i = 0; i < wall->n_bodies; ++i)
+    if (!strcmp(wall->bodies[i], body)) return PETSC_TRUE;
+  return !wall->n_bodies;
+}

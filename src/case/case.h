@@ -87,6 +87,8 @@ PetscInt case_columns(const Case *c);
 const MeasureSpec *case_column(const Case *c, PetscInt k);
 PetscInt case_column_of(const Case *c, const char *name);  /* its index, -1: there is none */
 PetscInt case_measure_of(const Case *c, const char *name); /* likewise, among the measures of c itself */
+/* Does the wall meet the body of that name? */
+PetscBool case_wall_meets(const WallSpec *wall, const char *body);
 /* When all stages are read: which bodies later ones take away, or bring to a wall, and whose motion begins with one. */
 void case_tell_changes(Case *c);
 /* When all stages are read; case_columns are those of c alone before. */

@@ -69,19 +69,12 @@ static PetscBool begins(const Case *c, PetscInt stage, const BodySpec *body)
   return (PetscBool)!body_there(before, body->name);
 }
 
-static PetscBool meets(const WallSpec *w, const char *body)
-{
-  for (PetscInt i = 0; i < w->n_bodies; ++i)
-    if (!strcmp(w->bodies[i], body)) return PETSC_TRUE;
-  return !w->n_bodies;
-}
-
 static PetscBool waits(const Case *c, PetscInt stage, const WallSpec *w)
 {
   for (PetscInt k = stage + 1; k < c->n_stages; ++k) {
     const Case *now = c->stage_case[k];
     for (const BodySpec *b = now->bodies; b < now->bodies + now->n_bodies; ++b)
-      if (!b->absent && meets(w, b->name) && !body_there(c->stage_case[k - 1], b->name)) return PETSC_TRUE;
+      if (!b->absent && case_wall_meets(w, b->name) && !body_there(c->stage_case[k - 1], b->name)) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }

@@ -208,10 +208,7 @@ void contact_start(const NodalScene *scene, ContactPoint *c)
 
 PetscBool contact_meets_body(const Case *c, PetscInt k, PetscInt body)
 {
-  const WallSpec *w = c->walls + k;
-  for (PetscInt i = 0; i < w->n_bodies; ++i)
-    if (!strcmp(w->bodies[i], c->bodies[body].name)) return PETSC_TRUE;
-  return !w->n_bodies;
+  return case_wall_meets(c->walls + k, c->bodies[body].name);
 }
 
 /* May the surface have turned since, with nothing that presses on it? What has flowed has others now. */
