@@ -21,11 +21,15 @@ EndIf
 Physical Surface("low") = {1}; Physical Surface("top") = {2}; Physical Curve("floor") = {1};
 Mesh.CharacteristicLengthMin = 0.1; Mesh.CharacteristicLengthMax = 0.1;
 END
+# Meshed once each: gmsh takes longer to start than the program has to do.
+for shared in 0 1; do
+  gmsh -2 blocks.geo -o blocks$shared.msh -format msh41 -setnumber shared $shared >out.txt 2>&1 || fail "blocks.geo: no mesh"
+done
 cat >case.yaml <<'END'
 kinematics: plane-strain
 method: fem
 analysis: {type: dynamic, step: 5e-3, end: 0.15, bossak: -0.3}
-grid: {mesh: blocks.geo}
+grid: {mesh: blocks0.msh}
 bodies: [{name: low, region: low, points_per_cell: 3, material: rubber}, {name: top, region: top, points_per_cell: 3, material: rubber}]
 materials: {rubber: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
 interfaces: [{name: joint, between: [top, low], contact: friction, friction: 0.2}]
@@ -38,31 +42,30 @@ measures:
   friction: {energy: friction}
 linear: direct # several ranks would iterate, and what may be left of gaps would differ
 output: {fields: [displacement], every: end}
-checkpoint: {steps: 10, keep: 5}
+checkpoint: {steps: 8, keep: 5}
 END
 
-# 320 kg: gravity's impulse along the slope less 0.2 times that of the joint; alike on all ranks. It hops at first, so
-# that the joint has given less than the weight has.
+# 320 kg: gravity's impulse along the slope less 0.2 times that of the joint. It hops at first, so that the joint has
+# given less than the weight has. Alike on all ranks, for which the first 12 of the 30 steps are enough, and resumed.
 for method in fem gmm; do
-  for ranks in 1 2 3; do
-    [ $method$ranks != gmm2 ] || continue
-    expect "$method slides, $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out ranks$ranks --force --quiet \
-      --set method=$method
-    awk -F, 'NR > 1 { along = $3; given += 5e-3 * $4 }
-      END { exit !((along / (320 * 4.905 * 0.15 - 0.2 * given) - 1) ^ 2 < 0.01 ^ 2 && given > 0.9 * 320 * 8.495709 * 0.15) }' ranks$ranks/history.csv ||
-      fail "$name: $(tail -n 1 ranks$ranks/history.csv)"
-    paste -d, ranks1/history.csv ranks$ranks/history.csv | awk -F, '
-      function size(x) { return x < 0 ? -x : x }
-      NR > 1 { n++; for (k = 3; k <= 6; ++k) { if (size($k) > most[k]) most[k] = size($k); if (size($k - $(k + 6)) > off[k]) off[k] = size($k - $(k + 6)) } }
-      END { for (k = 3; k <= 6; ++k) if (off[k] > 1e-8 * most[k]) { print k, off[k], most[k]; bad = 1 } exit bad || n < 25 }' ||
-      fail "$name: not as on one rank"
-  done
-  end=$(tail -n 1 ranks1/history.csv)
-  rm -f ranks3/checkpoint*30*
-  expect "$method goes on" 0 on_ranks 2 "$talus" run --resume ranks3 --quiet
-  printf '%s\n%s\n' "$end" "$(tail -n 1 ranks3/history.csv)" |
-    awk -F, '{ last = along; along = $3 } END { exit !((along / last - 1) ^ 2 < 1e-6 ^ 2) }' ||
-    fail "$name: $(tail -n 1 ranks3/history.csv)"
+  expect "$method slides, 1" 0 "$talus" run case.yaml --out ranks1 --force --quiet --set method=$method
+  awk -F, 'NR > 1 { along = $3; given += 5e-3 * $4 }
+    END { exit !((along / (320 * 4.905 * 0.15 - 0.2 * given) - 1) ^ 2 < 0.01 ^ 2 && given > 0.9 * 320 * 8.495709 * 0.15) }' ranks1/history.csv ||
+    fail "$name: $(tail -n 1 ranks1/history.csv)"
+  test $method = fem && ranks=3 other=2 || { ranks=2 other=3; }
+  expect "$method slides, $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out more --force --quiet \
+    --set method=$method --set analysis.end=0.06
+  head -n 14 ranks1/history.csv | paste -d, - more/history.csv | awk -F, '
+    function size(x) { return x < 0 ? -x : x }
+    NR > 1 { n++; for (k = 3; k <= 6; ++k) { if (size($k) > most[k]) most[k] = size($k); if (size($k - $(k + 6)) > off[k]) off[k] = size($k - $(k + 6)) } }
+    END { for (k = 3; k <= 6; ++k) if (off[k] > 1e-8 * most[k]) { print k, off[k], most[k]; bad = 1 } exit bad || n != 13 }' ||
+    fail "$name: not as on one rank"
+  rm -f more/checkpoint*12*
+  expect "$method goes on, $other" 0 on_ranks $other "$talus" run --resume more --quiet
+  says more/log.txt "resumed = step 8"
+  { sed -n 14p ranks1/history.csv; tail -n 1 more/history.csv; } |
+    awk -F, '{ last = along; along = $3 } END { exit !($2 == 12 && (along / last - 1) ^ 2 < 1e-6 ^ 2) }' ||
+    fail "$name: $(tail -n 1 more/history.csv)"
 done
 
 # Squares of four triangles have nodes in their middle, which ranks on the other side of the joint must know, too. What
@@ -93,10 +96,10 @@ for method in fem mpm; do
   done
 done
 
-for ranks in 1 3; do
+for ranks in 1 2; do
   test $ranks = 1 && method=gmm || method=fem
   expect "share nodes, $ranks" 2 on_ranks $ranks "$talus" run case.yaml --out shared --force --quiet \
-    --set "grid.parameters={shared: 1}" --set method=$method
+    --set grid.mesh=blocks1.msh --set method=$method
   says err.txt "share nodes of the mesh: the line between them must be there twice"
   lacks err.txt "goes through"
 done
