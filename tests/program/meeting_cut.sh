@@ -18,7 +18,7 @@ pushed() {
   cat <<END
 kinematics: plane-strain
 method: mpm
-analysis: {type: static, end: 2, steps: 40}
+analysis: {type: static, end: 1.1, steps: 22}
 grid: {box: {min: [-0.75, -0.25], max: [2.25, 2]}, size: 0.125}
 bodies:
   - {name: top, shape: $(box $1 0.75 0.5 1.75 1), material: rubber}
@@ -27,17 +27,17 @@ materials: {rubber: {law: neo-hookean, density: 1000, young: 1e8, poisson: 0.3}}
 walls:
   - {name: floor, shape: {half-space: {point: [0, 0], normal: $(turned $1 0 1)}}, contact: bonded, bodies: [base]}
   - {name: pusher, shape: {half-space: {point: $(turned $1 0.75 0.5), normal: $(turned $1 1 0)}}, bodies: [top],
-     motion: [{displacement: {x: $(part $1 0.2 cos), y: $(part $1 0.2 sin)}, amplitude: [[1, 0], [2, 1]]}]}
+     motion: [{displacement: {x: $(part $1 0.2 cos), y: $(part $1 0.2 sin)}, amplitude: [[0.1, 0], [1.1, 1]]}]}
 interfaces: [{name: i, between: [top, base], contact: friction, friction: 0.3}]
-loads: {gravity: $(turned $1 0 -10), gravity_amplitude: [[0, 0], [1, 1]]}
+loads: {gravity: $(turned $1 0 -10), gravity_amplitude: [[0, 0], [0.1, 1]]}
 measures: {x: {wall_force: x, of: {wall: pusher}}, y: {wall_force: y, of: {wall: pusher}}}
 output: {fields: [displacement], every: end}
 END
 }
 for turn in 10 17; do
   pushed $turn >pushed.yaml
-  expect "pushed, $turn" 0 on_ranks $((turn == 17 ? 3 : 1)) "$talus" run pushed.yaml --out pushed --force --quiet
-  awk -F, 'NR > 1 && $1 > 1.06 { p = sqrt($3 ^ 2 + $4 ^ 2); if (p < 1498 || p > 1502) bad = 1; ++n } END { exit bad || n != 19 }' pushed/history.csv || fail "$name: $(cut -d, -f1,3,4 pushed/history.csv)"
+  expect "pushed, $turn" 0 on_ranks $((turn == 17 ? 2 : 1)) "$talus" run pushed.yaml --out pushed --force --quiet
+  awk -F, 'NR > 1 && $1 > 0.16 { p = sqrt($3 ^ 2 + $4 ^ 2); if (p < 1498 || p > 1502) bad = 1; ++n } END { exit bad || n != 19 }' pushed/history.csv || fail "$name: $(cut -d, -f1,3,4 pushed/history.csv)"
 done
 
 # --- one that slides without friction on another one, which is free itself, in dynamics ---
@@ -47,7 +47,7 @@ slides() {
   cat <<END
 kinematics: plane-strain
 method: mpm
-analysis: {type: dynamic, end: 0.4, step: 0.002}
+analysis: {type: dynamic, end: 0.2, step: 0.002}
 grid: {box: {min: [-0.75, -0.25], max: [3.25, 2]}, size: 0.125}
 bodies:
   - {name: top, shape: $(box $1 0.25 0.5 1.25 1), material: rubber, velocity: $(turned $1 1 0), stress: $given}
@@ -85,30 +85,34 @@ interfaces: [{name: f, between: [block, wedge], friction: 0.44}]
 loads: {gravity: [0, -9.81]}
 output: {fields: [displacement], every: end}
 END
-expect "slides off" 1 "$talus" run slope.yaml --out slope --force --quiet
+expect "slides off" 1 "$talus" run slope.yaml --out slope --force --quiet --set analysis.smallest=1
 says err.txt "Friction may be overcome: 'block' slides at 16 of the 16 places"
 expect "stands" 0 on_ranks 2 "$talus" run slope.yaml --out slope --force --quiet --set 'interfaces[0].friction=0.48'
 
 # --- a block of cells that are taller than wide, on flat ones: points at its corners are nearer to its ends than to its
 # foot, which is plane all the same ---
-rectangle() { # NAME FIRST X0 Y0 X1 Y1 CELLS ROWS
-  awk -v n="$1" -v f="$2" -v x0="$3" -v y0="$4" -v x1="$5" -v y1="$6" -v c="$7" -v r="$8" 'BEGIN {
-    printf "Point(%d)={%g,%g,0,1};Point(%d)={%g,%g,0,1};Point(%d)={%g,%g,0,1};Point(%d)={%g,%g,0,1};\n", f, x0, y0, f + 1, x1, y0, f + 2, x1, y1, f + 3, x0, y1
-    for (k = 0; k < 4; ++k) printf "Line(%d)={%d,%d};", f + k, f + k, f + (k + 1) % 4
-    printf "\nLine Loop(%d)={%d,%d,%d,%d};Plane Surface(%d)={%d};\n", f, f, f + 1, f + 2, f + 3, f, f
-    printf "Transfinite Line{%d,%d}=%d;Transfinite Line{%d,%d}=%d;", f, f + 2, c + 1, f + 1, f + 3, r + 1
-    printf "Transfinite Surface{%d};Recombine Surface{%d};Physical Surface(\"%s\")={%d};\n", f, f, n, f }'
-}
-tall() { # CELLS ROWS of the block, CELLS ROWS of the wedge
-  rectangle block 1 0.633 1.2 1.433 1.6 $1 $2
-  rectangle wedge 5 0.033 0.7 2.233 1.2 $3 $4
-  echo 'Physical Line("foot")={5};'
+tall() { # CELLS ROWS of the block, CELLS ROWS of the wedge: a mesh as gmsh writes it, which takes longer to start
+  awk -v cells="$1 $3" -v rows="$2 $4" 'BEGIN {
+    split(cells, c); split(rows, r); split("0.633 0.033", x0); split("1.433 2.233", x1); split("1.2 0.7", y0); split("1.6 1.2", y1)
+    for (k = 1; k <= 2; ++k) {
+      for (j = 0; j <= r[k]; ++j) for (i = 0; i <= c[k]; ++i)
+        nodes = nodes sprintf("%d %.17g %.17g 0\n", ++n, x0[k] + (x1[k] - x0[k]) * i / c[k], y0[k] + (y1[k] - y0[k]) * j / r[k])
+      for (j = 0; j < r[k]; ++j) for (i = 0; i < c[k]; ++i) {
+        a = first + 1 + i + (c[k] + 1) * j
+        elements = elements sprintf("%d 3 2 %d %d %d %d %d %d\n", ++e, k, k, a, a + 1, a + c[k] + 2, a + c[k] + 1)
+      }
+      if (k == 2) for (i = 0; i < c[k]; ++i) elements = elements sprintf("%d 1 2 3 3 %d %d\n", ++e, first + 1 + i, first + 2 + i)
+      first = n
+    }
+    print "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n2 1 \"block\"\n2 2 \"wedge\"\n1 3 \"foot\"\n$EndPhysicalNames"
+    print "$Nodes\n" n "\n" nodes "$EndNodes\n$Elements\n" e "\n" elements "$EndElements"
+  }' >tall.msh
 }
 cat >tall.yaml <<'END'
 kinematics: plane-strain
 method: fem
 analysis: {type: static, steps: 1, smallest: 1}
-grid: {mesh: tall.geo}
+grid: {mesh: tall.msh}
 bodies:
   - {name: wedge, region: wedge, points_per_cell: 4, material: r}
   - {name: block, region: block, points_per_cell: 4, material: r}
@@ -119,15 +123,17 @@ loads: {gravity: [4.14588514768, -8.89087939083]}
 measures: {x: {interface_force: x, of: {interface: f}}, y: {interface_force: y, of: {interface: f}}}
 output: {fields: [displacement], every: end}
 END
-for method in fem gmm; do
-  tall 5 2 14 7 >tall.geo
+ranks=0
+for method in gmm fem; do
+  tall 5 2 14 7
   expect "stood, $method" 1 "$talus" run tall.yaml --out tall --force --quiet --set method=$method
   expect "stands, $method" 0 "$talus" run tall.yaml --out tall --force --quiet --set method=$method --set 'interfaces[0].friction=0.48'
-  tall 5 2 8 4 >tall.geo
-  expect "was refused, $method" 0 on_ranks 2 "$talus" run tall.yaml --out tall --force --quiet --set method=$method \
+  tall 5 2 8 4
+  turn
+  expect "was refused, $method" 0 on_ranks $ranks "$talus" run tall.yaml --out tall --force --quiet --set method=$method \
     --set 'loads.gravity=[0, -9.81]'
 done
-tall 5 2 14 7 >tall.geo
+tall 5 2 14 7
 expect "slides in time" 0 "$talus" run tall.yaml --out tall --force --quiet --set 'interfaces[0].friction=0.3' \
   --set 'analysis={type: dynamic, end: 0.2, step: 2e-3, bossak: -0.3}' --set 'loads.gravity_amplitude=[[0, 0], [0.2, 1]]'
 awk -F, 'NR > 20 && ($3 / $4 > -0.29 || $3 / $4 < -0.31) { bad = 1 } END { exit bad }' tall/history.csv ||
@@ -137,7 +143,7 @@ awk -F, 'NR > 20 && ($3 / $4 > -0.29 || $3 / $4 < -0.31) { bad = 1 } END { exit 
 sed 's/^method.*/method: fem/; /^basis/d; s/^analysis.*/analysis: {type: dynamic, end: 0.002, step: 0.001}/
   s/^interfaces.*/interfaces: [{name: f, between: [block, wedge], contact: frictionless}]/' slope.yaml >stairs.yaml
 for method in fem gmm; do
-  expect "stairs, $method" 0 on_ranks 2 "$talus" run stairs.yaml --out stairs --force --quiet --set method=$method
+  expect "stairs, $method" 0 on_ranks $(test $method = fem && echo 3 || echo 1) "$talus" run stairs.yaml --out stairs --force --quiet --set method=$method
   says err.txt "its shape slants at 'f'"
   expect "level, $method" 0 "$talus" run stairs.yaml --out stairs --force --quiet --set method=$method \
     --set 'bodies[0].shape={box: {min: [0, 0], max: [2, 0.73]}}' --set 'bodies[1].shape={box: {min: [0.5, 0.73], max: [1.27, 1.2]}}' \
