@@ -33,8 +33,15 @@ draw() {
   expect "$name, $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out run --force --quiet "$@"
 }
 
-expect "fem" 0 "$talus" run case.yaml --out fem --quiet --set method=fem
-for ranks in 3 2 1; do
+# fem needs no small steps: they are only where clouds might feed on what they have done. Three ranks go half of the way.
+expect "fem" 0 "$talus" run case.yaml --out fem --quiet --set method=fem --set analysis.steps=4
+ranks=3
+mv fem/history.csv all.csv && head -n 4 all.csv >fem/history.csv
+draw "half of it, lme" --set analysis.steps=20 --set boundary[1].displacement.x=0.5
+as_fem 1e-5
+lacks err.txt "drawn out"
+mv all.csv fem/history.csv
+for ranks in 2 1; do
   draw "lme"
   as_fem 1e-5
   lacks err.txt "drawn out"
@@ -43,39 +50,33 @@ done
 rm run/checkpoint_*40.h5 && cp run/history.csv whole.csv
 expect "lme, resumed" 0 "$talus" run --resume run --quiet
 cmp -s whole.csv run/history.csv || fail "$name: another history"
-turn
 draw "mls" --set 'basis={mls: {}}'
 as_fem 1e-4
 # Along both axes: the map of a point is rounded, else clouds feed on their own unevenness (7 % in these steps).
 mv case.yaml one.yaml && rm -rf fem
 sed 's/max: \[1, 0.5\]/max: [1, 1]/g; /on: {y: 0}/a\  - {on: {y: 1}, displacement: {y: 0.8}}' one.yaml >case.yaml
 set -- --set analysis.steps=160 --set boundary[1].displacement.x=0.8
-expect "fem, both ways" 0 "$talus" run case.yaml --out fem --quiet --set method=fem "$@"
-turn
+expect "fem, both ways" 0 "$talus" run case.yaml --out fem --quiet --set method=fem "$@" --set analysis.steps=10
 draw "lme, both ways" "$@"
 as_fem 1e-5
-turn
 draw "mls, both ways" "$@" --set 'basis={mls: {}}'
 as_fem 1e-3
 # Sheared by 1.5, where nodes stand nearly as they did: clouds drawn out along the principal axes lost 6 %.
 rm -rf fem
 sed '/on: {x: 0}/d; s/on: {y: 0}, fix: \[y\]/on: {y: 0}, fix: [x, y]/; s/on: {x: 1}, displacement: {x: 1}/on: {y: 1}, displacement: {x: 1.5, y: 0}/
   s/max: \[1, 0.5\]/max: [2, 1]/g' one.yaml >case.yaml
-expect "fem, sheared" 0 "$talus" run case.yaml --out fem --quiet --set method=fem --set analysis.steps=80
-turn
+expect "fem, sheared" 0 "$talus" run case.yaml --out fem --quiet --set method=fem --set analysis.steps=10
 draw "lme, sheared" --set analysis.steps=80
 as_fem 3e-2
 rm -rf fem && mv one.yaml case.yaml
 # six functions want more nodes: 8 % with clouds of two spacings, and more in shorter steps
-expect "fem, less" 0 "$talus" run case.yaml --out fem --quiet --set boundary[1].displacement.x=0.3
-turn
+expect "fem, less" 0 "$talus" run case.yaml --out fem --quiet --set method=fem --set analysis.steps=4 --set boundary[1].displacement.x=0.3
 draw "quadratic mls" --set 'basis={mls: {order: quadratic}}' --set boundary[1].displacement.x=0.3
 as_fem 1e-3
 says err.txt "100 % of the material is drawn out by more than a fifth, among functions so wide"
-turn
 draw "a cubic spline" --set 'basis={mls: {weight: cubic-spline}}' --set boundary[1].displacement.x=0.3
 as_fem 1e-3
-turn
+ranks=3
 draw "wide lme" --set 'basis={lme: {gamma: 0.6}}' --set analysis.steps=4
 says err.txt "100 % of the material is drawn out by more than a fifth, among functions so wide"
 
@@ -84,8 +85,8 @@ sed 's/plane-strain/3d/; s/steps: 40/steps: 15/; s/0.125/0.25/
   s/min: \[0, 0\], max: \[1, 0.5\]/min: [0, 0, 0], max: [1, 0.5, 0.5]/g
   s/x: 1}}/x: 1.4}}/; /on: {y: 0}/a\  - {on: {z: 0}, fix: [z]}' case.yaml >space.yaml
 rm -rf fem && mv space.yaml case.yaml
-expect "fem in space" 0 "$talus" run case.yaml --out fem --quiet --set method=fem
-turn
+expect "fem in space" 0 "$talus" run case.yaml --out fem --quiet --set method=fem --set analysis.steps=5
+ranks=2
 draw "lme in space"
 as_fem 1e-5
 
@@ -97,11 +98,12 @@ Curve Loop(1)={5,3,-6,-1};Curve Loop(2)={6,4,-7,-2};Plane Surface(1)={1};Plane S
 Transfinite Curve{1:4}=25;Transfinite Curve{5:7}=25 Using Progression 1.1;Transfinite Surface{1,2};Recombine Surface{1,2};
 Physical Surface("plate")={1,2};Physical Curve("right")={3};
 END
+gmsh -2 plate.geo -o plate.msh -format msh41 >out.txt 2>&1 || fail "plate.geo: no mesh" # once: it starts slowly
 cat >plate.yaml <<'END'
 kinematics: plane-strain
 method: gmm
 analysis: {type: static, steps: 1}
-grid: {mesh: plate.geo}
+grid: {mesh: plate.msh}
 bodies: [{name: plate, region: plate, points_per_cell: 4, material: steel}]
 materials: {steel: {law: neo-hookean, density: 8000, young: 1e9, poisson: 0.3}}
 boundary: [{on: {x: 0}, fix: [x]}, {on: {y: 0}, fix: [y]}]
@@ -115,10 +117,8 @@ plate_as_fem() {
       END { for (k = 3; k <= 5; ++k) bad += ($k / F[k] - 1) ^ 2 > 0.01 ^ 2; exit bad || NR < 2 }' ||
     fail "$name: $(tail -n 1 run/history.csv)"
 }
-for ranks in 2 1; do
-  expect "plate, lme, $ranks" 0 on_ranks $ranks "$talus" run plate.yaml --out run --force --quiet
-  plate_as_fem
-done
+expect "plate, lme" 0 on_ranks 2 "$talus" run plate.yaml --out run --force --quiet
+plate_as_fem
 expect "plate, mls" 0 "$talus" run plate.yaml --out run --force --quiet --set 'basis={mls: {}}'
 plate_as_fem
 # What cannot come apart lacks no cohesion.
