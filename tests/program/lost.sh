@@ -8,7 +8,7 @@ compare="$(cd "$(dirname "$0")" && pwd)/compare.awk"
 cat >bar.yaml <<'END'
 kinematics: plane-strain
 method: mpm
-analysis: {type: static, steps: 10}
+analysis: {type: static, steps: 4}
 grid: {box: {min: [0, 0], max: [4, 1]}, size: 0.25}
 bodies:
   - {name: bar, shape: {box: {min: [0, 0], max: [4, 1]}}, points_per_cell: 4, material: rubber}
@@ -24,19 +24,14 @@ measures:
   at: {position: x, of: {tracer: [4, 1]}}
 basis: {cell: {}} # averaged functions are linear at a side of the box, so that the grid of the bar would be another one
 END
-expect "check" 0 "$talus" check bar.yaml
-says err.txt "bar.yaml:6:5: warning: 'bar' fills the grid to its edge towards x, y, where nothing holds it" "let the grid reach"
-expect "check of a larger grid" 0 "$talus" check bar.yaml --set 'grid.box.max=[5, 2]'
-[ ! -s err.txt ] || fail "$name: a warning"
 expect "check of a body that ends within the last cell" 0 "$talus" check bar.yaml --set 'grid.box.max=[5, 2]' --set 'bodies[0].shape.box.max=[4.8, 1]' --set 'loads={}'
 lacks err.txt "fills the grid"
 expect "larger grid" 0 "$talus" run bar.yaml --out large --quiet --set 'grid.box.max=[5, 2]'
-for ranks in 1 2 3; do
-  expect "its own grid, $ranks ranks" 0 on_ranks $ranks "$talus" run bar.yaml --out own$ranks --quiet
-  says err.txt "warning: 'bar' fills the grid"
-  awk -f "$compare" large/history.csv own$ranks/history.csv >difference.txt || { fail "$name: differs"; head -n 3 difference.txt; }
-done
-awk -F, 'END {exit !($3 > 0.039 && $3 < 0.041)}' own1/history.csv || fail "the tip moves $(tail -n 1 own1/history.csv)"
+[ ! -s err.txt ] || fail "$name: a warning"
+expect "its own grid" 0 on_ranks 2 "$talus" run bar.yaml --out own --quiet
+says err.txt "bar.yaml:6:5: warning: 'bar' fills the grid to its edge towards x, y, where nothing holds it" "let the grid reach"
+awk -f "$compare" large/history.csv own/history.csv >difference.txt || { fail "$name: differs"; head -n 3 difference.txt; }
+awk -F, 'END {exit !($3 > 0.039 && $3 < 0.041)}' own/history.csv || fail "the tip moves $(tail -n 1 own/history.csv)"
 
 # Two blocks fly, and one of them out of the grid; one of its tracers is within its body, the other is the other's
 cat >fly.yaml <<'END'
@@ -78,7 +73,7 @@ for ranks in 1 2 3; do
     fail "$name: momentum, energy or balance"
   cut -d, -f4 fly$ranks/history.csv | sed '1,25d' | grep -q '^4\.0' || fail "$name: the tracer did not leave the grid with its body"
   # in the midst of the removal, and when the tracer has ended
-  for step in 20 40; do
+  for step in $(echo '20 40:20:40' | cut -d: -f$ranks); do
     cp -r fly$ranks cut
     for file in cut/checkpoint_*.h5; do
       [ "$(basename $file .h5 | sed 's/checkpoint_0*//')" -le $step ] || rm $file
@@ -108,7 +103,7 @@ says err.txt "warning: the transfer between points and grid took " " % of the en
 cat >swing.yaml <<'END'
 kinematics: plane-strain
 method: gmm
-analysis: {type: dynamic, end: 4, step: 0.03}
+analysis: {type: dynamic, end: 0.6, step: 0.03}
 grid: {box: {min: [0, 0], max: [2, 0.5]}, size: 0.25}
 bodies: [{name: b, shape: {box: {min: [0, 0], max: [2, 0.5]}}, material: m, velocity: [0, 0.5]}]
 materials: {m: {law: j2, density: 1000, young: 1e6, poisson: 0.3, yield_stress: 1e8}}
@@ -162,7 +157,7 @@ output: {every: 0.2}
 END
 for basis in gimp cell; do
   for from in 0.3 0.34 0.37; do
-    turn
+    case $basis$from in gimp0.34) ranks=3 ;; cell0.37) ranks=2 ;; *) ranks=1 ;; esac
     expect "what flies out, $basis from $from on $ranks" 0 on_ranks $ranks "$talus" run leaves.yaml --out leaves --force --quiet --set "basis={$basis: {}}" \
       --set "bodies[0].shape.box={min: [$from, 0.4], max: [$(awk "BEGIN { print $from + 0.2 }"), 0.6]}"
     awk -F, 'NR > 1 && ($3 + $4 - 80) ^ 2 > 1e-18 { exit 1 } END { exit !($4 > 79.9 && ($5 - 80) ^ 2 < 1e-18) }' leaves/history.csv || fail "$name: $(tail -n 1 leaves/history.csv)"
@@ -171,7 +166,7 @@ done
 
 # States that nothing is left in are left out of pictures with a word, and histories are drawn all the same.
 for times in last all; do
-  expect "pictures of what has flown out, $times" 0 "$talus" plot leaves --time $times
+  expect "pictures of what has flown out, $times" 0 "$talus" plot leaves --time $times --size 300x200
   says err.txt "warning: states without points are not drawn: 1 of 3, the first at 0.4 s"
   says out.txt "picture = leaves/pictures/state" "picture = leaves/pictures/history_p.png"
 done
