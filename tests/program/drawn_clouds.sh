@@ -33,7 +33,7 @@ draw() {
   expect "$name, $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out run --force --quiet "$@"
 }
 
-# fem needs no small steps: they are only where clouds might feed on what they have done. Three ranks go half of the way.
+# fem needs no small steps, in which clouds might feed on what they have done. Three ranks go half of the way.
 expect "fem" 0 "$talus" run case.yaml --out fem --quiet --set method=fem --set analysis.steps=4
 ranks=3
 mv fem/history.csv all.csv && head -n 4 all.csv >fem/history.csv

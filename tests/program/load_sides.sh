@@ -87,7 +87,7 @@ boundary: [{name: left, on: {x: 0}, fix: [x]}, {name: base, on: {y: 0}, fix: [y]
 loads: {tractions: [{on: {body: d, boundary: arc}, value: [0, -1000]}]}
 measures: {base: {reaction: y, of: {boundary: base}}, left: {reaction: x, of: {boundary: left}}, xx: {stress: xx}, yy: {stress: yy}}
 END
-# another load along x: as far as its range, where the grid's lines, and a fourth of its cells, are elsewhere; within a part
+# along x another load as far as its range: the grid's lines, and a fourth of its cells, are elsewhere; within a part
 for basis in bspline gimp cell; do
   turn
   test $basis = bspline && range="0.203, 0.204" length=1 || { range="0.123, 0.4" length=277; }
@@ -104,7 +104,7 @@ expect "in a ring" 0 "$talus" run disk.yaml --out run --force --set kinematics=a
 near base 3 785.398 0.2 # p pi R^2
 expect "a ring as far as its range" 0 "$talus" run disk.yaml --out run --force --set kinematics=axisymmetric --set 'loads.tractions[0].on={body: d, boundary: bottom, x: [0.1234, 0.377]}'
 near base 3 398.672632 1e-5 # t pi (b^2 - a^2)
-# A group of the mesh whose name is also that of a side of the grid, where the body has 0.5 m; and a side without a group.
+# A group of the mesh by the name of a side of the grid too, where the body has 0.5 m; and a side without a group.
 sed 's/"arc"/"bottom"/' disk.msh >bottom.msh
 expect "its own name, and a place" 0 on_ranks 2 "$talus" run disk.yaml --out run --force --set 'bodies[0].mesh=bottom.msh' --set 'loads.tractions[0].on={body: d, boundary: bottom}' \
   --set 'loads.tractions[1]={on: {body: d, boundary: left}, value: [-1000, 0]}'
