@@ -28,17 +28,15 @@ stages:
   - {name: again, analysis: {type: static, steps: 1}}
 END
 
-for ranks in 1 2 3; do
+for ranks in 1 3; do
   expect "on $ranks" 0 on_ranks $ranks "$talus" run block.yaml --out on$ranks
 done
 # The floor goes on bearing the weight, 9810 N, within 1 %; the top stays within 2 % of its way of 4.2 mm.
 awk -F, 'NR == 3 { top = $4 } NR > 3 && ($5 < 9710 || $5 > 9910 || $6 > 0.003 || $4 / top < 0.98 || $4 / top > 1.02) { bad = 1; print }
   END { exit bad || NR != 14 }' on1/history.csv >out.txt || fail "does not stand"
-for ranks in 2 3; do
-  awk -F, '{ print $1, $4, $5 }' on1/history.csv >one.txt
-  awk -F, '{ print $1, $4, $5 }' on$ranks/history.csv | paste -d ' ' one.txt - |
-    awk 'NR > 1 { d = $2 - $5; f = $3 - $6; if (d * d > 1e-16 || f * f > 1e-2) exit 1 }' || fail "on $ranks ranks otherwise"
-done
+awk -F, '{ print $1, $4, $5 }' on1/history.csv >one.txt
+awk -F, '{ print $1, $4, $5 }' on3/history.csv | paste -d ' ' one.txt - |
+  awk 'NR > 1 { d = $2 - $5; f = $3 - $6; if (d * d > 1e-16 || f * f > 1e-2) exit 1 }' || fail "on 3 ranks otherwise"
 
 # Springs that become stiffer or softer from stage to stage go on with the force that they had: nothing leaps by the 1.8 mm
 # that material is deep in soft ones (it was 10 mm and twice the weight).
@@ -60,13 +58,8 @@ for case in pair hangs; do
 done
 
 # What presses on walls sinks in, and the run says so where that is much.
-falls() {
-  expect "explicit of $1" 0 "$talus" run block.yaml --out "of$1" --set stages=null --set "materials.rubber.young=$1" \
-    --set 'analysis={type: explicit, end: 0.4, step: 0.02, damping: 20}'
-}
-falls 1e5
-says err.txt "of a cell deep in wall 'floor'"
-falls 1e7
+expect "explicit of 1e7" 0 "$talus" run block.yaml --out of1e7 --set stages=null --set materials.rubber.young=1e7 \
+  --set 'analysis={type: explicit, end: 0.4, step: 0.02, damping: 20}'
 ! grep -q "of a cell deep" err.txt || fail "tells of a hundredth of a per cent"
 # A stage that is not explicit takes surfaces where they are, and what gives way goes on to do so.
 expect "explicit, then statics" 0 "$talus" run block.yaml --out follows --set materials.rubber.young=1e5 \
@@ -104,7 +97,7 @@ boundary: [{on: {x: 0}, fix: [x, y, z]}]
 loads: {tractions: [{on: {body: bar, x: 0.5}, value: [1e4, 0, 0]}]}
 measures: {end: {displacement: x, of: {tracer: [0.5, 0.05, 0.05]}}, transfer: {energy: transfer}}
 END
-for way in "0 1" "0.005 1" "0 2"; do
+for way in "0 2" "0.005 1"; do
   set -- $way
   box="bodies[0].shape.box={min: [0, $1, $1], max: [0.5, $(awk -v a=$1 'BEGIN { print a + 0.1 }'), $(awk -v a=$1 'BEGIN { print a + 0.1 }')]}"
   expect "pulled, $1 off the lines, on $2" 0 on_ranks $2 "$talus" run pulled.yaml --out pulled --force --quiet --set "$box"
