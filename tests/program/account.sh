@@ -11,12 +11,19 @@ worst() {
 # closes DIR [MOST]: to what Newton's method leaves, or contact.
 closes() { awk -v b="$(worst "$1")" -v most="${2:-1e-8}" 'BEGIN { exit !(b < most) }' || fail "$name: the balance is $(worst "$1")"; }
 
-# closes_on LABEL METHODS ARGUMENT...: case.yaml with these, on 1, 2 and 3 ranks in turn.
+# Of six runs one is on 2 and one on 3 ranks, which cost most where they outnumber cores.
+turns=0
+now_and_then() {
+  turns=$((turns % 6 + 1))
+  case $turns in 3) ranks=2 ;; 6) ranks=3 ;; *) ranks=1 ;; esac
+}
+
+# closes_on LABEL METHODS ARGUMENT...: case.yaml with these, now and then on 2 and 3 ranks.
 closes_on() {
   label=$1 methods=$2
   shift 2
   for method in $methods; do
-    turn
+    now_and_then
     expect "$label, $method on $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out run --quiet --set "method=$method" "$@"
     closes run
     rm -r run
@@ -67,7 +74,7 @@ walls: [{name: heavy, shape: {circle: {centre: [0.2, 0.96], radius: 0.16}}, mass
 measures: {friction: {energy: friction}, balance: {energy: balance}}
 output: {history: {steps: 1}}
 END
-for ranks in 1 2 3; do
+for ranks in 1 3; do
   expect "a disk that sticks, on $ranks" 0 on_ranks $ranks "$talus" run disk.yaml --out disk$ranks --quiet
   closes disk$ranks 1e-6
   awk -F, 'NR > 1 { if ($3 < last - 5e-4) exit 1; last = $3 }' disk$ranks/history.csv || fail "$name: friction gives energy: $(cut -d, -f3 disk$ranks/history.csv | tr '\n' ' ')"
@@ -147,8 +154,8 @@ materials: {m: {law: neo-hookean, young: 1e6, poisson: 0.3, density: 1000}}
 boundary: [{on: {boundary: left}, displacement: {x: 0, y: 0.1}, amplitude: $(awk 'BEGIN { for (k = 0; k < 60; ++k) printf "%s[%g, %.8f]", k ? ", " : "[", k / 1000, sin(k / 60 * 3.14159265) ^ 2; print ", [0.06, 0]]" }')}]
 measures: {came: {energy: external}, transfer: {energy: transfer}}
 END
-for basis in '{mls: {}}' '{mls: {essential: direct}}' '{lme: {essential: constraints}}'; do
-  turn
+for way in '1 {mls: {}}' '1 {mls: {essential: direct}}' '2 {lme: {essential: constraints}}'; do
+  ranks=${way%% *} basis=${way#* }
   expect "shaken, $basis on $ranks" 0 on_ranks $ranks "$talus" run shaken.yaml --out shaken --force --quiet --set "basis=$basis"
   awk -F, 'END { exit !($3 > 100 && $4 * $4 < (0.025 * $3) ^ 2) }' shaken/history.csv || fail "$name: $(tail -n 1 shaken/history.csv)"
 done
@@ -167,8 +174,8 @@ walls: [{name: drum, shape: {circle: {centre: [0, 0], radius: 1}}, motion: [{rot
 measures: {torque: {wall_torque: z, of: {wall: drum}}, came: {energy: external}, friction: {energy: friction}, transfer: {energy: transfer}, balance: {energy: balance}}
 output: {every: end}
 END
-for method in fem mpm gmm; do
-  turn
+for way in "fem 1" "mpm 1" "gmm 2"; do
+  method=${way% *} ranks=${way#* }
   expect "a smooth drum, $method on $ranks" 0 on_ranks $ranks "$talus" run drum.yaml --out smooth --force --quiet --set method=$method
   lacks err.txt "the transfer to what stops"
   awk -F, 'NR > 1 && $1 < 0.201 { pressed = $4 } END { exit !(($4 / pressed - 1) ^ 2 < 1e-6 && $6 ^ 2 < (0.02 * pressed) ^ 2) }' smooth/history.csv || fail "$name: $(tail -n 1 smooth/history.csv)"
@@ -187,7 +194,7 @@ walls: [{name: w, shape: {circle: {centre: [0, 0], radius: 1}}, inside: true, mo
 measures: {came: {energy: external}, transfer: {energy: transfer}}
 output: {every: end}
 END
-turn
+ranks=3
 expect "a smooth drum, explicit on $ranks" 0 on_ranks $ranks "$talus" run round.yaml --out turns --force --quiet
 expect "and one that stands" 0 "$talus" run round.yaml --out stands --force --quiet --set 'walls[0].motion=[]'
 awk -F, -v stands="$(tail -n 1 stands/history.csv | cut -d, -f4)" 'END { exit !($3 ^ 2 < 0.02 ^ 2 && ($4 - stands) ^ 2 < 0.02 ^ 2) }' turns/history.csv || fail "$name: $(tail -n 1 turns/history.csv)"
