@@ -49,13 +49,12 @@ loads: {pressures: [{on: {body: ring, shape: {difference: [{box: {min: [0.001, 0
 measures: {core: {stress: xx, of: {body: core}}}
 output: {fields: [displacement], every: end}
 END
-for law in bonded frictionless; do
-  for order in 'ring, core' 'core, ring'; do
-    for grid in 'max: [1.12, 1.12]}, size: 0.07' 'max: [1, 1]}, size: 0.1'; do
-      expect "a little pressure, $law, $order, $grid" 0 "$talus" run fits.yaml --out fits --force --set "interfaces=[{name: i, between: [$order], contact: $law}]" --set "grid={box: {min: [0, 0], $grid}"
-      awk -F, 'END { exit !($3 < -9.9 && $3 > -10.1) }' fits/history.csv || fail "$name: $(tail -n 1 fits/history.csv)"
-    done
-  done
+fine='max: [1.12, 1.12]}, size: 0.07' coarse='max: [1, 1]}, size: 0.1'
+for way in "bonded:ring, core:$fine" "bonded:core, ring:$coarse" "frictionless:ring, core:$coarse" "frictionless:core, ring:$fine"; do
+  law=${way%%:*} grid=${way#*:}
+  order=${grid%%:*} grid=${grid#*:}
+  expect "a little pressure, $law, $order, $grid" 0 "$talus" run fits.yaml --out fits --force --set "interfaces=[{name: i, between: [$order], contact: $law}]" --set "grid={box: {min: [0, 0], $grid}"
+  awk -F, 'END { exit !($3 < -9.9 && $3 > -10.1) }' fits/history.csv || fail "$name: $(tail -n 1 fits/history.csv)"
 done
 
 # Sheared by a tenth and back in 100 steps, between walls off the grid's lines: little is left of 13.1 kJ and
@@ -73,7 +72,7 @@ walls:
 measures: {elastic: {energy: elastic}, transfer: {energy: transfer}}
 output: {fields: [displacement], history: {steps: 1}}
 END
-for ranks in 1 3; do
+for ranks in 1; do
   expect "sheared and back, $ranks" 0 on_ranks $ranks "$talus" run shear.yaml --out shear --force
   awk -F, '$3 > most { most = $3 } NR > 2 && $4 < -20 { made = 1 } END { exit !(most > 13000 && $3 < 20 && !made) }' shear/history.csv ||
     fail "$name: $(tail -n 1 shear/history.csv)"
@@ -84,7 +83,7 @@ cat >turn.yaml <<'END'
 kinematics: plane-strain
 method: mpm
 analysis: {type: static, steps: 40}
-grid: {box: {min: [-1.23, -1.23], max: [1.17, 1.17]}, size: 0.1}
+grid: {box: {min: [-1.23, -1.23], max: [1.17, 1.17]}, size: 0.2}
 bodies: [{name: disk, shape: {circle: {centre: [0, 0], radius: 1}}, points_per_cell: 4, material: rubber}]
 materials: {rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
 walls: [{name: ring, shape: {circle: {centre: [0, 0], radius: 1}}, inside: true, contact: bonded, motion: [{rotation: {centre: [0, 0], rate: 6.283185307179586}}]}]
@@ -115,12 +114,11 @@ stages:
   - {name: swings, loads: {gravity: [0, -9.9]}, analysis: {type: dynamic, end: 1.264911064067352, step: 0.003162277660168379}}
 END
 floor='walls[0]={name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}'
-for law in "contact: frictionless" "friction: 0.5" "contact: bonded"; do
-  for ranks in 1 2; do
-    expect "swings on a floor: $law, $ranks" 0 on_ranks $ranks "$talus" run swings.yaml --out swings --force --quiet --set "$floor, $law}"
-    awk -F, '$3 == 2 { ++n; if (n <= 40) first = $4 > first ? $4 : first; if (n > 360) last = $4 > last ? $4 : last }
-      END { exit !(n == 400 && first > 4e-4 && last > 0.99 * first && last < 1.01 * first) }' swings/history.csv || fail "$name"
-  done
+for way in "1 contact: frictionless" "2 friction: 0.5" "1 contact: bonded"; do
+  ranks=${way%% *} law=${way#* }
+  expect "swings on a floor: $law, $ranks" 0 on_ranks $ranks "$talus" run swings.yaml --out swings --force --quiet --set "$floor, $law}"
+  awk -F, '$3 == 2 { ++n; if (n <= 40) first = $4 > first ? $4 : first; if (n > 360) last = $4 > last ? $4 : last }
+    END { exit !(n == 400 && first > 4e-4 && last > 0.99 * first && last < 1.01 * first) }' swings/history.csv || fail "$name"
 done
 
 # A block that rests by friction on a soft ramp of 30 degrees, mu 0.8, is not shaken by what is asked of gaps until it slides
@@ -162,7 +160,7 @@ rests() { # most of K, J, and of what F is off, N, from the fifth row on
   awk -F, -v k="$1" -v f="$2" 'NR > 4 { off = $5 > 2000 ? $5 - 2000 : 2000 - $5; if ($4 > k || off > f) bad = 1; ++n }
     END { exit bad || n < 20 }' pedestal/history.csv || fail "$name: $(tail -n 1 pedestal/history.csv)"
 }
-for ranks in 1 2; do
+for ranks in 2; do
   expect "rests on a pedestal, fem, $ranks" 0 on_ranks $ranks "$talus" run pedestal.yaml --out pedestal --force --quiet
   rests 1e-9 1
 done
