@@ -24,7 +24,7 @@ free() {
   awk -F, 'NR > 1 && ($3 * $3 > 1e-6 || $4 * $4 > 1e-6 || ($5 - 1) ^ 2 > 1e-16) { bad = 1 } END { exit bad || NR < 10 }' turns/history.csv ||
     fail "$name: $(tail -n 1 turns/history.csv)"
 }
-for way in "mpm bonded 1" "fem bonded 1" "gmm bonded 1" "mpm frictionless 1" "fem stick 1" "mpm bonded 2" "mpm bonded 3"; do
+for way in "mpm bonded 2" "fem bonded 1" "gmm bonded 1" "mpm frictionless 1" "fem stick 3"; do
   set -- $way
   expect "turns, $way" 0 on_ranks $3 "$talus" run turns.yaml --out turns --force --quiet --set method=$1 --set walls[0].contact=$2
   free
@@ -43,7 +43,7 @@ done
 # Two bodies that meet, in a box that turns, whatever lies between them; a core in a frame whose nodes turn.
 for way in "fem bonded" "mpm bonded" "gmm bonded" "fem frictionless" "gmm frictionless"; do
   set -- $way
-  expect "two turn, $way" 0 "$talus" run turns.yaml --out turns --force --quiet --set method=$1 --set analysis.steps=18 --set walls[0].contact=frictionless \
+  expect "two turn, $way" 0 "$talus" run turns.yaml --out turns --force --quiet --set method=$1 --set analysis.end=0.5 --set walls[0].contact=frictionless \
     --set 'bodies=[{name: b, shape: {box: {min: [-0.5, -0.5], max: [0.5, 0]}}, material: m}, {name: c, shape: {box: {min: [-0.5, 0], max: [0.5, 0.5]}}, material: m}]' \
     --set "interfaces=[{name: i, between: [b, c], contact: $2}]"
   free
@@ -70,12 +70,10 @@ output: {fields: [displacement], every: end}
 END
 expect "no lid has moved" 0 "$talus" run sheared.yaml --out sheared --force --quiet --set initial.equilibrium=none
 cp sheared/history.csv none.csv
-for ranks in 1 3; do
-  expect "the lid moves, $ranks" 0 on_ranks $ranks "$talus" run sheared.yaml --out sheared --force --quiet
-  awk -F, 'NR == 2 && ($3 * $3 > 1e-12 || ($4 + 300) ^ 2 > 1e-12) { bad = 1 }
-    NR == FNR { fx[FNR] = $3; next } FNR > 2 && ($3 - fx[FNR]) ^ 2 > 1e-12 * fx[FNR] ^ 2 { bad = 1 } END { exit bad }' sheared/history.csv none.csv ||
-    fail "$name: $(cat sheared/history.csv none.csv)"
-done
+expect "the lid moves" 0 on_ranks 2 "$talus" run sheared.yaml --out sheared --force --quiet
+awk -F, 'NR == 2 && ($3 * $3 > 1e-12 || ($4 + 300) ^ 2 > 1e-12) { bad = 1 }
+  NR == FNR { fx[FNR] = $3; next } FNR > 2 && ($3 - fx[FNR]) ^ 2 > 1e-12 * fx[FNR] ^ 2 { bad = 1 } END { exit bad }' sheared/history.csv none.csv ||
+  fail "$name: $(cat sheared/history.csv none.csv)"
 # Sand at rest beside a rough wall that will go down: no friction before it has.
 cat >sand.yaml <<'END'
 kinematics: plane-strain
@@ -109,15 +107,13 @@ measures: {all: {energy: mechanical}, came: {energy: external}, transfer: {energ
 output: {fields: [displacement], every: end}
 END
 exact=241.664 # I w^2 / 2, I = rho pi R^4 / 2
-for ranks in 1 3; do
-  expect "a drum's motor, $ranks" 0 on_ranks $ranks "$talus" run drum.yaml --out drum --force --quiet
-  awk -F, -v e=$exact 'END { exit !(($3 / e - 1) ^ 2 < 0.01 ^ 2 && ($4 / $3 - 1) ^ 2 < 0.002 ^ 2 && ($5 / e) ^ 2 < 0.002 ^ 2) }' drum/history.csv || fail "$name: $(tail -n 1 drum/history.csv)"
-done
+expect "a drum's motor" 0 on_ranks 2 "$talus" run drum.yaml --out drum --force --quiet
+awk -F, -v e=$exact 'END { exit !(($3 / e - 1) ^ 2 < 0.01 ^ 2 && ($4 / $3 - 1) ^ 2 < 0.002 ^ 2 && ($5 / e) ^ 2 < 0.002 ^ 2) }' drum/history.csv || fail "$name: $(tail -n 1 drum/history.csv)"
 # The torque times the angle is that work, too: the drum turns by 1.5 t^2 / 0.6 * 1 rad.
 awk -F, -v e=$exact 'function angle(t) { return t < 0.6 ? 2.5 * t * t : 0.9 + 3 * (t - 0.6) }
   NR == 2 { t = $1 } NR > 2 { work += $6 * (angle($1) - angle(t)); t = $1 } END { exit !((work / $4 - 1) ^ 2 < 0.005 ^ 2) }' drum/history.csv || fail "$name: torque"
 for basis in gimp bspline cell; do
-  expect "short steps, $basis" 0 "$talus" run drum.yaml --out drum --force --quiet --set materials.m.young=1e5 --set analysis.step=0.00125 --set analysis.end=0.3 --set "basis={$basis: {}}"
+  expect "short steps, $basis" 0 "$talus" run drum.yaml --out drum --force --quiet --set materials.m.young=1e5 --set analysis.step=0.00125 --set analysis.end=0.2 --set "basis={$basis: {}}"
   awk -F, 'END { exit !(($5 / $4) ^ 2 < 0.01 ^ 2) }' drum/history.csv || fail "$name: $(tail -n 1 drum/history.csv)"
 done
 
@@ -134,11 +130,9 @@ walls: [{name: drum, shape: {box: {min: [1.3, -1], max: [1.5, 1]}}, contact: sti
 measures: {torque: {wall_torque: z, about: [0, 0], of: {wall: drum}}, momentum: {angular_momentum: z}, work: {energy: external}}
 output: {fields: [displacement], history: {steps: 1}}
 END
-for ranks in 1 3; do
-  expect "carried round, $ranks" 0 on_ranks $ranks "$talus" run carried.yaml --out carried --force
-  awk -F, 'NR == 2 { first = $4; t = $1 } NR > 2 { sum += $3 * ($1 - t); t = $1 }
-    END { d = sum - ($4 - first); exit !(NR > 25 && d * d < 1 && $5 * $5 < 100) }' carried/history.csv || fail "$name: $(tail -n 1 carried/history.csv)"
-done
+expect "carried round" 0 on_ranks 2 "$talus" run carried.yaml --out carried --force
+awk -F, 'NR == 2 { first = $4; t = $1 } NR > 2 { sum += $3 * ($1 - t); t = $1 }
+  END { d = sum - ($4 - first); exit !(NR > 25 && d * d < 1 && $5 * $5 < 100) }' carried/history.csv || fail "$name: $(tail -n 1 carried/history.csv)"
 
 # A block that rests on a rough floor goes along with it, wherever the floor turns about: a plane through its foot, a
 # plane above which it turns, and the bottom of a box, from the start on or with its weight borne before.
@@ -160,7 +154,7 @@ tilted() {
     END { dx = x - 0.25 * sin(-0.3); dy = y + 0.25 * cos(0.3); exit bad || NR != 12 || dx * dx + dy * dy > 4e-6 }' tilt/history.csv ||
     fail "$name: $(tail -n 1 tilt/history.csv)"
 }
-for way in "mpm gimp 1" "fem gimp 1" "mpm bspline 1" "mpm gimp 2" "mpm gimp 3"; do
+for way in "mpm gimp 2" "fem gimp 1" "mpm bspline 1"; do
   set -- $way
   basis=basis=$2
   [ $1 = mpm ] || basis=newton.max_iterations=30
@@ -190,7 +184,7 @@ went() {
   awk -F, -v y="$1" -v n="$2" -v c=$3 'NR > 2 && ($(c + 1) - 4905) ^ 2 > 0.1 { bad = 1 } END { exit bad || NR != n || ($(c + 2) - y) ^ 2 > 1e-6 }' down/history.csv ||
     fail "$name: $(tail -n 1 down/history.csv)"
 }
-for way in "fem 1 frictional" "mpm 1 frictional" "mpm 1 frictionless" "mpm 2 frictional" "mpm 3 frictional"; do
+for way in "fem 1 frictional" "mpm 1 frictionless" "mpm 2 frictional"; do
   set -- $way
   smooth=walls[0].name=w
   [ $3 = frictional ] || smooth='walls[0]={name: w, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, contact: frictionless, motion: [{displacement: {y: -0.1}}]}'
@@ -212,7 +206,7 @@ kinematics: plane-strain
 method: fem
 formulation: mean-dilatation
 analysis: {type: static, steps: 10}
-grid: {box: {min: [0, 0], max: [12, 6]}, size: 0.5}
+grid: {box: {min: [0, 0], max: [12, 6]}, size: 1}
 bodies: [{name: soil, shape: {box: {min: [0, 0], max: [12, 6]}}, material: clay, k0: 1}]
 materials: {clay: {law: mohr-coulomb, density: 2000, young: 50e6, poisson: 0.49, friction_angle: 0, cohesion: 20e3, tension_cutoff: 0}}
 walls: [{name: wall, shape: {half-space: {point: [0, 0], normal: [1, 0]}}, motion: [{displacement: {x: -0.06}}]}]
@@ -221,10 +215,9 @@ loads: {gravity: [0, -10]}
 measures: {P: {wall_force: x, of: {wall: wall}}}
 output: {every: end}
 END
-for ranks in 2; do
-  expect "a crack behind a wall, $ranks" 0 on_ranks $ranks "$talus" run crack.yaml --out crack --force --quiet
-  awk -F, 'END { exit !(($3 / 160e3 - 1) ^ 2 < 0.03 ^ 2) }' crack/history.csv || fail "$name: $(tail -n 1 crack/history.csv)"
-done
+expect "a crack behind a wall" 0 on_ranks 2 "$talus" run crack.yaml --out crack --force --quiet
+says crack/log.txt "tried again"
+awk -F, 'END { exit !(($3 / 160e3 - 1) ^ 2 < 0.03 ^ 2) }' crack/history.csv || fail "$name: $(tail -n 1 crack/history.csv)"
 
 # What may stay of gaps follows newton.residual: then an impact is the same whatever solved it, 1e-3 from what gaps of
 # 1e-5 of a cell leave.
@@ -240,12 +233,12 @@ boundary: [{name: axis, on: {boundary: left}, fix: [x]}]
 walls: [{name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}}]
 measures: {W: {wall_force: y, of: {wall: floor}}}
 END
-for way in "1 direct" "1 auto" "2 auto" "3 auto"; do
+for way in "1 direct" "1 auto" "3 auto"; do
   set -- $way
   expect "an impact by $2 on $1" 0 on_ranks $1 "$talus" run lands.yaml --out lands --force --quiet --set linear=$2 --set newton.residual=1e-12
   tail -n 1 lands/history.csv >>lands.csv
 done
-awk -F, 'NR == 1 { first = $3 } { bad += ($3 / first - 1) ^ 2 > 4e-14 } END { exit bad || NR != 4 }' lands.csv ||
+awk -F, 'NR == 1 { first = $3 } { bad += ($3 / first - 1) ^ 2 > 4e-14 } END { exit bad || NR != 3 }' lands.csv ||
   fail "an impact, whatever solves it: $(tr '\n' ' ' <lands.csv)"
 
 # A punch that goes along the surface meets what comes under its edge, however short the steps: its force goes on as it
@@ -264,7 +257,7 @@ measures: {fx: {wall_force: x, of: {wall: w}}, fy: {wall_force: y, of: {wall: w}
 output: {every: end, history: {steps: 1}}
 END
 for way in method=fem method=mpm method=gmm analysis.step=0.001 'analysis={type: static, end: 0.3, steps: 60}'; do
-  turn
+  [ "$way" = method=mpm ] && ranks=2 || ranks=1
   box='{min: [0, 0], max: [2, 0.75]}' want=45430
   [ "$way" != method=gmm ] || box='{min: [0, 0], max: [2, 0.5]}' want=44100 # softer, fem with fine cells has 42000
   expect "a punch goes along, $way on $ranks" 0 on_ranks $ranks "$talus" run punch.yaml --out punch --force --quiet --set "$way" --set "grid.box=$box"
@@ -278,7 +271,7 @@ done
 cat >along.yaml <<'END'
 kinematics: plane-strain
 method: fem
-analysis: {type: dynamic, end: 0.6, step: 0.005, damping: 50}
+analysis: {type: dynamic, end: 0.6, step: 0.01, damping: 50}
 grid: {box: {min: [0, 0], max: [2.5, 1]}, size: 0.125}
 bodies:
   - {name: low, shape: {box: {min: [0, 0], max: [2.5, 0.5]}}, material: m}
@@ -294,10 +287,10 @@ output: {every: end, history: {steps: 1}}
 END
 for way in fem mpm gmm; do
   for order in 'low, up' 'up, low'; do
-    turn
+    [ "$way $order" = 'mpm low, up' ] && ranks=2 || ranks=1
     expect "a body goes along, $way, $order, on $ranks" 0 on_ranks $ranks "$talus" run along.yaml --out along --force --quiet --set "method=$way" --set "interfaces=[{name: i, between: [$order]}]"
     awk -F, 'NR > 1 && $1 > 0.1 { n += 1; sum += sqrt($3 ^ 2); area += $4; if ($1 > 0.4) { late += sqrt($3 ^ 2); m += 1 } }
-      END { exit !(n > 90 && (sum / n / 45400 - 1) ^ 2 < 0.06 ^ 2 && (late / m / (sum / n) - 1) ^ 2 < 0.02 ^ 2 && (area / n / 0.5 - 1) ^ 2 < 0.02 ^ 2) }' along/history.csv ||
+      END { exit !(n > 45 && (sum / n / 45400 - 1) ^ 2 < 0.06 ^ 2 && (late / m / (sum / n) - 1) ^ 2 < 0.02 ^ 2 && (area / n / 0.5 - 1) ^ 2 < 0.02 ^ 2) }' along/history.csv ||
       fail "$name: $(tail -n 1 along/history.csv)"
   done
 done
@@ -328,30 +321,29 @@ sed -e 's/plane-strain/3d/; s/min: \[0, 0\], max: \[2, 1\]/min: [0, 0, 0], max: 
   -e "s/^boundary.*/$(echo "$space" | sed 's/=/: /')/; s/point: \[0, 0\], normal: \[1, 0\]/point: [0, 0, 0], normal: [1, 0, 0]/" foot.yaml >space.yaml
 pushed y foot.yaml >pushed.yaml
 pushed z space.yaml >pushed_space.yaml
-for way in "fem 1 pushed foot" "fem 4 pushed foot" "mpm 4 pushed foot" "gmm 1 pushed foot" "fem 1 pushed_space space"; do
+for way in "fem 1 pushed foot 1" "fem 4 pushed foot 1" "mpm 4 pushed foot 2" "gmm 1 pushed foot 3" "fem 1 pushed_space space 1"; do
   set -- $way
-  turn
   box=output.every=end
   [ $1 = mpm ] && box='grid.box={min: [-0.5, 0], max: [2, 1.5]}'
-  expect "pushed nodes, $way" 0 "$talus" run $3.yaml --out pushed --force --quiet --set method=$1 --set analysis.steps=1 --set "$box"
-  expect "a foot that stands, $way, on $ranks" 0 on_ranks $ranks "$talus" run $4.yaml --out foot --force --quiet --set method=$1 --set analysis.steps=$2 --set "$box"
+  [ $1$2 = fem4 ] || expect "pushed nodes, $way" 0 "$talus" run $3.yaml --out pushed --force --quiet --set method=$1 --set analysis.steps=1 --set "$box"
+  expect "a foot that stands, $way" 0 on_ranks $5 "$talus" run $4.yaml --out foot --force --quiet --set method=$1 --set analysis.steps=$2 --set "$box"
   awk -F, 'NR == FNR { f = $3; a = $4; w = $5; next } { F = $3; A = $4; W = $5; T = $6 }
     END { exit !((A / a - 1) ^ 2 < 2e-4 ^ 2 && (W / w - 1) ^ 2 < 2e-3 ^ 2 && F > f && F < 1.2 * f && (T / W) ^ 2 < 2e-3 ^ 2) }' pushed/history.csv foot/history.csv ||
     fail "$name: $(tail -n 1 foot/history.csv), not $(tail -n 1 pushed/history.csv)"
 done
 for method in fem mpm gmm; do
-  turn
+  [ $method = mpm ] && ranks=2 || ranks=1
   box=output.every=end
   [ $method = mpm ] && box='grid.box={min: [-0.5, 0], max: [2, 1.5]}'
   expect "there and back, $method, on $ranks" 0 on_ranks $ranks "$talus" run foot.yaml --out foot --force --quiet --set method=$method --set "$box" --set "$back"
   awk -F, 'NR > 1 && $3 > most { most = $3 } { last = $3 } END { exit !(most > 10000 && last < 2e-3 * most && last > -2e-3 * most) }' foot/history.csv || fail "$name: $(cat foot/history.csv)"
 done
 # Of a wall that sticks and goes along itself as well: the side is a foot of its upper face.
+expect "nodes of a lid" 0 "$talus" run pushed.yaml --out pushed --force --quiet \
+  --set 'boundary=[{name: push, on: {y: 1, x: [0.01, 2]}, displacement: {x: 1e-4, y: -1e-4}}, {on: {y: 0}, fix: [x, y]}, {name: far, on: {x: 0}, fix: [x, y]}]'
 for kind in stick bonded; do
   expect "a lid beside a side that stands, $kind" 0 "$talus" run foot.yaml --out foot --force --quiet --set "walls=[{name: w, shape: {half-space: {point: [0, 1], normal: [0, -1]}}, contact: $kind, motion: [{displacement: {x: 1e-4, y: -1e-4}}]}]" \
     --set 'boundary=[{on: {y: 0}, fix: [x, y]}, {name: far, on: {x: 0}, fix: [x, y]}]'
-  expect "nodes of a lid, $kind" 0 "$talus" run pushed.yaml --out pushed --force --quiet \
-    --set 'boundary=[{name: push, on: {y: 1, x: [0.01, 2]}, displacement: {x: 1e-4, y: -1e-4}}, {on: {y: 0}, fix: [x, y]}, {name: far, on: {x: 0}, fix: [x, y]}]'
   awk -F, 'NR == FNR { f = $3; next } { F = $3 } END { exit !(F > f && F < 1.2 * f) }' pushed/history.csv foot/history.csv ||
     fail "$name: $(tail -n 1 foot/history.csv), not $(tail -n 1 pushed/history.csv)"
 done
@@ -390,13 +382,11 @@ rests() {
   awk -F , 'NR > 1 && $NF > 0.05 {bad = 1} END {exit bad}' gate/history.csv || fail "$name: $(tail -n 2 gate/history.csv | tr '\n' ' ')"
 }
 for method in mpm fem; do
-  turn
+  [ $method = mpm ] && ranks=2 || ranks=1
   name="a gate, $method" && rests --set method=$method --set output.every=0.05011
 done
-turn
 name="a gate, short steps" && rests --set analysis.step=0.000625
 name="a gate, Newmark" && rests --set analysis.scheme=newmark --set output.every=0.05011
-turn
 name="a gate of a stage" && rests --set walls[1].from=0 --set 'stages=[{name: a, analysis: {end: 0.02}, walls: [{name: gate, absent: true}]}, {name: b, analysis: {end: 0.02, step: 0.0005}, walls: [{name: gate, absent: false}]}]'
 
 
@@ -419,11 +409,11 @@ interfaces: [{name: joint, between: [block, base], friction: 0.4}]
 loads: {gravity: [0, -9.81]}
 measures: {F: {interface_force: y, of: {interface: joint}}}
 END
-for way in "1 direct 1e-10" "1 auto 1e-10" "2 auto 1e-10" "3 auto 1e-10" "1 direct 1e-8" "1 auto 1e-8" "2 auto 1e-8" "3 auto 1e-8"; do
+for way in "1 direct 1e-10" "3 auto 1e-10" "1 direct 1e-8" "1 auto 1e-8" "2 auto 1e-8"; do
   set -- $way
   expect "wide functions by $2 on $1, $3" 0 on_ranks $1 "$talus" run wide.yaml --out wide --force --quiet --set linear=$2 --set newton.residual=$3
   tail -n 1 wide/history.csv >>wide.csv
 done
-awk -F, '{ bad += ($3 / 79.0586 - 1) ^ 2 > 4e-10 } END { exit bad || NR != 8 }' wide.csv ||
+awk -F, '{ bad += ($3 / 79.0586 - 1) ^ 2 > 4e-10 } END { exit bad || NR != 5 }' wide.csv ||
   fail "wide functions, whatever solves: $(tr '\n' ' ' <wide.csv)"
 finish
