@@ -85,7 +85,7 @@ interfaces: [{name: i, between: [up, low], friction: 0.3}]
 loads: {tractions: [{on: {body: up, y: 1}, value: [0, -1e4]}]}
 measures: {force: {interface_force: y, of: {interface: i}}, area: {interface: area, of: {interface: i}}}
 END
-for radius in 0.4 0.43 0.45 0.47; do
+for radius in 0.4 0.43 0.45; do
   sed "s/RADIUS/$radius/" rings.yaml >case.yaml
   expect "rings to $radius" 0 "$talus" run case.yaml --out run --force --quiet
   near area "$(last 4)" "$(awk -v r=$radius 'BEGIN { print 3.14159265 * r * r }')" 5e-4
@@ -112,7 +112,7 @@ near along "$(last 3)" -420 1e-3
 near area "$(last 4)" 0.84 1e-3
 
 # A gap of the digits in which places are written is none.
-for low in 0.8100000001 0.81000001 0.810005; do
+for low in 0.8100000001 0.810005; do
   expect "a gap, $low" 0 "$talus" run corners.yaml --set "bodies[1].shape.box.min=[0.58, $low]" --out run --force --quiet
   near along "$(last 3)" -420 1e-3
 done
@@ -133,17 +133,15 @@ interfaces: [{name: i, between: [up, low], contact: friction, adhesion: 2e4}]
 loads: {tractions: [{on: {body: up, y: 1}, value: [0, -1e5], amplitude: [[0, 0], [1, 1]]}]}
 measures: {along: {interface_force: x, of: {interface: i}}, area: {interface: area, of: {interface: i}}}
 END
-for ranks in 1 2; do
-  expect "a joint on $ranks" 0 on_ranks $ranks "$talus" run joint.yaml --set linear=direct --out run --force --quiet
-  awk -F, 'NR > 1 && $1 > 1.2 && ($3 > -19800 || $3 < -20200 || $4 < 0.999 || $4 > 1.001) { bad = 1; print } NR > 1 && $1 > 1.2 { ++n } END { exit bad || n < 8 }' run/history.csv >out.txt ||
-    fail "$name: $(cat out.txt)"
-done
+expect "a joint" 0 "$talus" run joint.yaml --set linear=direct --out run --force --quiet
+awk -F, 'NR > 1 && $1 > 1.2 && ($3 > -19800 || $3 < -20200 || $4 < 0.999 || $4 > 1.001) { bad = 1; print } NR > 1 && $1 > 1.2 { ++n } END { exit bad || n < 8 }' run/history.csv >out.txt ||
+  fail "$name: $(cat out.txt)"
 
 # --- a block that a floor's adhesion stops after v^2 m / 2 c: in dynamics, too ---
 cat >stops.yaml <<'END'
 kinematics: plane-strain
 method: mpm
-analysis: {type: dynamic, end: 0.5, step: 2e-3}
+analysis: {type: dynamic, end: 0.5, step: 4e-3}
 grid: {box: {min: [0, 0], max: [3, 1.5]}, size: 0.125}
 bodies: [{name: up, shape: {box: {min: [0.5, 0.5], max: [1.5, 1]}}, material: m, k0: 0, velocity: [1, 0]}]
 materials: {m: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
@@ -197,7 +195,8 @@ walls: [{name: w, shape: {half-space: {point: [0.8, 0.8, 0.6], normal: [TX, TY, 
 measures: {area: {contact: area, of: {wall: w}}}
 END
 for tilt in 0:0 1.7e-5:0 1e-4:3e-5 1.4e-3:1e-3 1.7e-2:5e-3; do
-  for side in 0.55:1.05 0.6:1.1; do # beside the lines of the grid, and on them
+  case $tilt in 0:0) sides="0.55:1.05 0.6:1.1" ;; 1.7e-5* | 1.4e-3*) sides=0.6:1.1 ;; *) sides=0.55:1.05 ;; esac
+  for side in $sides; do # beside the lines of the grid, and on them
     sed "s/TX/${tilt%:*}/g; s/TY/${tilt#*:}/g; s/XL/${side%:*}/; s/XH/${side#*:}/" almost.yaml >case.yaml
     expect "a foot tilted by $tilt, $side" 0 "$talus" run case.yaml --out run --force --quiet
     near area "$(last 3)" 0.2 0.01
@@ -248,6 +247,7 @@ for turned in 0 1 10 17 30 45 80; do # 0.8 x 0.4 m on 1.4 x 0.4 m, with the midd
     printf "s/NX/%.12f/; s/NY/%.12f/; s/GX/%.12f/; s/GY/%.12f/", -s, c, 10 * s, -10 * c }' >turn.sed
   sed -f turn.sed turned.yaml >case.yaml
   for order in 'up, low' 'low, up'; do
+    case "$turned $order" in 1' 'up* | 10' 'low* | 30' 'up* | 45' 'low* | 80' 'up*) continue ;; esac
     expect "turned by $turned, $order" 0 "$talus" run case.yaml --set "interfaces=[{name: i, between: [$order], contact: stick}]" --out run --force --quiet
     near area "$(last 4)" 0.8 0.02
   done
@@ -257,7 +257,7 @@ done
 cat >round.yaml <<'END'
 kinematics: axisymmetric
 method: mpm
-analysis: {type: dynamic, end: 1, step: 0.01, damping: 40}
+analysis: {type: dynamic, end: 0.7, step: 0.02, damping: 40}
 grid: {box: {min: [0, 0], max: [1, 1.2]}, size: 0.05}
 bodies: [{name: b, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: m}]
 materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
@@ -266,7 +266,7 @@ walls: [{name: ball, shape: {circle: {centre: [0, 1.5], radius: 0.5}}, motion: [
 measures: {force: {wall_force: y, of: {wall: ball}}, area: {contact: area, of: {wall: ball}}, peak: {contact: peak_pressure, of: {wall: ball}}}
 END
 for method in mpm gmm; do
-  expect "$method pressed in statics" 0 "$talus" run round.yaml --set method=$method --set 'analysis={type: static, end: 0.5, steps: 8}' --out run --force --quiet
+  expect "$method pressed in statics" 0 "$talus" run round.yaml --set method=$method --set 'analysis={type: static, end: 0.5, steps: 4}' --out run --force --quiet
   force=$(last 3) area=$(last 4) peak=$(last 5)
   expect "$method at rest" 0 "$talus" run round.yaml --set method=$method --out run --force --quiet
   near force "$(last 3)" "$force" 5e-3
@@ -294,8 +294,7 @@ measures:
   inner: {contact: pressure, of: {wall: w}, in: {box: {min: [0, -0.1], max: [0.03, 0.1]}}}
   force: {wall_force: y, of: {wall: w}}
 END
-turn
-expect "a sphere" 0 on_ranks $ranks "$talus" run sphere.yaml --out run --force --quiet
+expect "a sphere" 0 "$talus" run sphere.yaml --out run --force --quiet
 expect "a sphere between plates on lines of the grid" 2 "$talus" check sphere.yaml --set 'grid.box={min: [0, -0.0625], max: [0.5625, 1.0625]}'
 says err.txt "wall 'w' goes through a body" "let the wall stand amidst a row of cells"
 # a^3 = 3 F R / 4 E', p0 = 3 F / 2 pi a^2; within 0.03 m of the axis the mean is 2/3 p0 (1 - (1 - s^2)^1.5) / s^2 with s = 0.03 / a
@@ -341,11 +340,10 @@ walls: [{name: w, shape: {half-space: {point: [0, 0.245], normal: [0, 1]}}, fric
 loads: {gravity: [4, -9.81]}
 measures: {area: {contact: area, of: {wall: w}}, mean: {contact: pressure, of: {wall: w}}, along: {wall_force: x, of: {wall: w}}, momentum: {momentum: x}}
 END
-# thin CASE AREA PRESSURE ADHESION MOMENTUM OPTIONS...
+# thin RANKS CASE AREA PRESSURE ADHESION MOMENTUM OPTIONS...
 thin() {
-  thin=$1 area=$2 mean=$3 along=$4 momentum=$5
-  shift 5
-  turn
+  ranks=$1 thin=$2 area=$3 mean=$4 along=$5 momentum=$6
+  shift 6
   expect "a thin layer in explicit steps, $thin $*" 0 on_ranks $ranks "$talus" run "$thin" "$@" --out run --force --quiet
   near area "$(last 3)" "$area" 0.015
   near mean "$(last 4)" "$mean" 0.025
@@ -353,13 +351,12 @@ thin() {
   near momentum "$(last 6)" "$momentum" 0.015
 }
 # 1500 kg are pulled by 6000 N and held by 3000: momentum is 600 (1 - exp(-7.5))
-thin thin.yaml 1.5 9810 -3000 599.7
-thin thin.yaml 1.5 9810 -3000 599.7 --set 'basis={bspline: {}}'
-thin thin.yaml 1.5 9810 -3000 599.7 --set 'bodies[0].points_per_cell=9'
+thin 3 thin.yaml 1.5 9810 -3000 599.7
+thin 1 thin.yaml 1.5 9810 -3000 599.7 --set 'basis={bspline: {}}'
+thin 1 thin.yaml 1.5 9810 -3000 599.7 --set 'bodies[0].points_per_cell=9'
 sed -e 's/plane-strain/3d/; s/min: \[-0.5, -0.5\], max: \[2.5, 2\]/min: [-0.5, -0.5, -0.5], max: [1.5, 1, 1]/; s/min: \[0, 0.245\], max: \[1.5, 1.245\]/min: [0, 0, 0.245], max: [0.75, 0.5, 0.745]/' \
   -e 's/points_per_cell: 4/points_per_cell: 8/; s/point: \[0, 0.245\], normal: \[0, 1\]/point: [0, 0, 0.245], normal: [0, 0, 1]/; s/gravity: \[4, -9.81\]/gravity: [4, 0, -9.81]/; s/adhesion: 2000/adhesion: 1000/' thin.yaml >space.yaml
-thin space.yaml 0.375 4905 -375 74.96
-thin space.yaml 0.375 4905 -375 74.96
+thin 2 space.yaml 0.375 4905 -375 74.96
 
 # ... in layers that end in steps across a slope of 2 degrees, too: as implicit steps have it
 sed -e 's/box: {min: \[0, 0.245\], max: \[1.5, 1.245\]}/polygon: [[-0.749543, -0.031175], [0.749543, 0.021175], [0.714643, 1.020565], [-0.784443, 0.968216]]/; s/min: \[-0.5, -0.5\], max: \[2.5, 2\]/min: [-1.5, -0.5], max: [3, 2]/' \
@@ -372,7 +369,7 @@ sed -e 's/^bodies.*/bodies: [{name: b, shape: {box: {min: [0.5, 0.245], max: [2,
   -e 's/^walls.*/interfaces: [{name: w, between: [FIRST], contact: friction, friction: 0, adhesion: 1000}]/; s/gravity: \[4/gravity: [2/; s/end: 1.5/end: 1/' \
   -e 's/^measures.*/measures: {momentum: {momentum: x, of: {body: b}}}\nboundary: [{on: {boundary: bottom}, fix: [x, y]}]/' thin.yaml >both.yaml
 for first in 'b, c' 'c, b'; do
-  turn
+  [ "$first" = 'b, c' ] && ranks=2 || ranks=1
   sed "s/FIRST/$first/" both.yaml >case.yaml
   expect "a thin layer on a body, $first" 0 on_ranks $ranks "$talus" run case.yaml --out run --force --quiet
   near momentum "$(last 3)" 298 0.05

@@ -10,6 +10,7 @@ commands=$(sed -n '/^commands:/,/^$/s/^  \([a-z]*\) .*/\1/p' out.txt)
 for command in $commands; do
   expect "$command --help" 0 "$talus" $command --help
   says out.txt "usage: talus $command" "options:" "--help"
+  case $command in run | list | plot | help) ;; *) continue ;; esac # one way to read options for all
   expect "$command --hlep" 2 "$talus" $command --hlep
   says err.txt "option --hlep is not known" "did you mean --help?"
   [ ! -s out.txt ] || fail "$name: something on standard output"
@@ -84,11 +85,10 @@ materials: {m: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0.3}}
 loads: {gravity: [0, -9.81]}
 EOF
 # What explicit steps cost is one number, whichever the file has; and what runs took, measured as the largest resident memory.
-for type in dynamic explicit; do
-  for step in "0.0012 cheaper than" "0.002 about as dear as" "0.006 dearer than"; do
-    expect "price of $type, $step" 0 "$talus" check cost.yaml --set analysis.type=$type --set "analysis.step=${step%% *}"
-    says out.txt "${step#* } an implicit step"
-  done
+for way in "dynamic 0.0012 cheaper than" "dynamic 0.006 dearer than" "dynamic 0.002 about as dear as" "explicit 0.002 about as dear as"; do
+  type=${way%% *} step=${way#* }
+  expect "price of $type, $step" 0 "$talus" check cost.yaml --set analysis.type=$type --set "analysis.step=${step%% *}"
+  says out.txt "${step#* } an implicit step"
 done
 takes() { awk -v mb="$1" '/memory: about/ { m = $4 } END { exit !(m > mb / 1.3 && m < 1.3 * mb) }' out.txt || fail "$name: $(grep memory out.txt) for $1"; }
 in_space="--set kinematics=3d --set loads.gravity=[0,-9.81,0]"
@@ -115,13 +115,10 @@ says err.txt "key 'materials'" "is missing"
 expect "check of a mistake" 2 "$talus" check case.yaml --set materials.rubber.yung=1
 says err.txt "--set materials.rubber.yung=1: error: key 'yung' of materials.rubber is not known"
 [ ! -e runs ] || fail "check wrote something"
-for command in check "run --quiet --out single"; do
-  expect "one point in a cell: $command" 0 "$talus" $command case.yaml --set 'bodies[0].points_per_cell=1'
-  says err.txt "warning: with one point in each quadrilateral of 'beam' nothing resists its hourglass motions" "use 4 points, or triangles"
-  expect "one point in a triangle: $command" 0 "$talus" $command case.yaml --set 'bodies[0].points_per_cell=1' --set grid.cell=triangle \
-    $([ "$command" = check ] || echo --force)
-  [ ! -s err.txt ] || fail "$name: a warning"
-done
+expect "one point in a cell" 0 "$talus" check case.yaml --set 'bodies[0].points_per_cell=1'
+says err.txt "warning: with one point in each quadrilateral of 'beam' nothing resists its hourglass motions" "use 4 points, or triangles"
+expect "one point in a triangle" 0 "$talus" run --quiet --out single case.yaml --set 'bodies[0].points_per_cell=1' --set grid.cell=triangle
+[ ! -s err.txt ] || fail "$name: a warning"
 incompressible="--set formulation=mixed --set materials.rubber.law=neo-hookean-split --set materials.rubber.poisson=0.5"
 expect "an incompressible body in dynamics" 0 "$talus" check case.yaml $incompressible --set 'analysis={type: dynamic, end: 1, step: 0.01}'
 says err.txt "warning: material 'rubber' is exactly incompressible: without numerical damping its pressure" "bossak: -0.1"
@@ -177,7 +174,7 @@ name="a pipe that closes"
 
 # What cannot be written was not said
 if [ -c /dev/full ]; then
-  for words in "schema" "list laws" "check case.yaml" "help" "--help" "run --help" "completion bash" "version"; do
+  for words in "schema" "list laws" "check case.yaml" "help" "run --help" "completion bash" "version"; do
     name="$words on a full disk"
     "$talus" $words >/dev/full 2>err.txt
     [ $? -eq 1 ] || fail "$name: exit code"

@@ -37,23 +37,22 @@ force() {
 }
 like=$(lame 2e11 2e11) within=$(lame 1e6 1e8)
 for order in 'out, in' 'in, out'; do
-  for basis in gimp bspline cell; do
-    expect "$order, $basis" 0 "$talus" run rings.yaml --out run --force --quiet --set "interfaces[0].between=[$order]" --set "basis={$basis: {}}"
+  [ "$order" = 'out, in' ] && ways="gimp:3 cell:1" moduli=2 || ways="gimp:1 bspline:1" moduli=1
+  for way in $ways; do
+    basis=${way%:*}
+    expect "$order, $basis" 0 on_ranks ${way#*:} "$talus" run rings.yaml --out run --force --quiet --set "interfaces[0].between=[$order]" --set "basis={$basis: {}}"
     force "$like" 0.005
   done
-  expect "$order, of two moduli" 0 "$talus" run rings.yaml --out run --force --quiet --set "interfaces[0].between=[$order]" \
+  expect "$order, of two moduli" 0 on_ranks $moduli "$talus" run rings.yaml --out run --force --quiet --set "interfaces[0].between=[$order]" \
     --set materials.hard.young=1e6 --set materials.soft.young=1e8
   force "$within" 0.005
   # 5e-16 of the modulus presses what touches: 1e-4 N
-  for analysis in '{type: static, steps: 2}' '{type: dynamic, end: 2e-5, step: 1e-5}' '{type: explicit, end: 4e-5, step: 2e-5}'; do
+  [ "$order" = 'out, in' ] && other='{type: dynamic, end: 2e-5, step: 1e-5}' || other='{type: explicit, end: 4e-5, step: 2e-5}'
+  for analysis in '{type: static, steps: 2}' "$other"; do
     expect "$order, no load, $analysis" 0 "$talus" run rings.yaml --out run --force --quiet --set "interfaces[0].between=[$order]" \
       --set "analysis=$analysis" --set loads.pressures[0].value=0
     force 0 1
   done
-done
-for ranks in 2 3; do
-  expect "rings on $ranks" 0 on_ranks $ranks "$talus" run rings.yaml --out run --force --quiet
-  force "$like" 0.005
 done
 expect "with finer cells" 0 "$talus" run rings.yaml --out run --force --quiet --set grid.size=0.05
 force "$like" 0.001
@@ -81,6 +80,7 @@ DONE
 for method in fem gmm; do
   for order in 'out, in' 'in, out'; do
     for load in 1 0; do
+      case $method$order$load in femin*0 | gmmout*0) continue ;; esac
       expect "$method, $order, $load Pa" 0 "$talus" run rings.yaml --out run --force --quiet --set method=$method --set 'grid={mesh: rings.geo}' \
         --set 'bodies=[{name: in, region: in, points_per_cell: 3, material: hard}, {name: out, region: out, points_per_cell: 3, material: soft}]' \
         --set "loads={pressures: [{on: {boundary: outside}, value: $load}]}" --set "interfaces[0].between=[$order]"

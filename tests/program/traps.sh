@@ -2,6 +2,9 @@
 # What is right by the letter and hardly meant is said where the user stands, and what is meant is not cried at.
 . "$(dirname "$0")/library.sh"
 
+# only: the last check warned once.
+only() { [ "$(grep -c warning: err.txt)" -eq 1 ] || fail "$name: more than one warning"; }
+
 # warned NAME TEXT... -- OPTION...: `check` of case.yaml passes, and warns with all these texts; without a text it must be silent.
 warned() {
   name=$1
@@ -41,11 +44,9 @@ END
 # last COLUMN: of the last row.
 last() { tail -n 1 run/history.csv | cut -d, -f "$1"; }
 instant='analysis={type: dynamic, end: 1e-5, step: 1e-5}'
-for ranks in 1 2 3; do
-  expect "a slope on $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out run --force --quiet --set "$instant"
-  awk -v m="$(last 3)" -v r="$(last 4)" 'BEGIN { d = r / (m * 9.81) - 1; exit !(d < 1e-9 && d > -1e-9) }' ||
-    fail "$name: the floor carries $(last 4) N of $(last 3) kg"
-done
+expect "a slope" 0 on_ranks 3 "$talus" run case.yaml --out run --force --quiet --set "$instant"
+awk -v m="$(last 3)" -v r="$(last 4)" 'BEGIN { d = r / (m * 9.81) - 1; exit !(d < 1e-9 && d > -1e-9) }' ||
+  fail "$name: the floor carries $(last 4) N of $(last 3) kg"
 expect "a slope in statics" 0 "$talus" run case.yaml --out run --force --quiet
 says run/log.txt "gravity = from the start"
 # what k0 lacks was taken away before the first step, which moves nothing and dissipates nothing but round-off
@@ -75,25 +76,24 @@ boundary:
 loads: {tractions: [{on: {body: soil, x: [0, 1], y: 0}, value: [0, -1000]}]}
 END
 warned "a material of no body" "warning: materials.rock has no effect here: no body is made of it" -- --set formulation=mixed \
-  --set 'materials.rock={law: neo-hookean, density: 1, young: 1e9, poisson: 0}'
-warned "a material that has been of a body" -- --set formulation=mixed --set 'materials.sand={law: mohr-coulomb, density: 1e-3, young: 1e5, poisson: 0.3, friction_angle: 20, cohesion: 100}' --set 'bodies[0].material=sand'
+  --set 'materials.rock={law: neo-hookean, density: 1000, young: 1e9, poisson: 0}'
+only # the mixed formulation does not lock
+warned "a material that has been of a body, and friction" -- --set 'materials.sand={law: mohr-coulomb, density: 1e-3, young: 1e5, poisson: 0.3, friction_angle: 20, cohesion: 100}' --set 'bodies[0].material=sand'
 warned "undrained clay" "case.yaml:8:86: warning: 'clay' yields without any change of its volume: with displacements as the only unknowns quadrilaterals lock" \
   '`formulation: mean-dilatation` keeps that away, and so does `mixed`' --
-warned "triangles" "triangles lock" '`formulation: mixed` keeps that away' -- --set grid.cell=triangle --set 'bodies[0].points_per_cell=3'
-warned "clouds" "clouds lock" "method gmm has no mixed form: take mpm or fem" -- --set method=gmm
-warned "J2" "'clay' yields without any change of its volume" -- \
-  --set 'materials.clay={law: j2, density: 1, young: 1e5, poisson: 0.3, yield_stress: 100}'
-warned "rubber" "'clay' hardly changes its volume" -- --set 'materials.clay={law: neo-hookean, density: 1, young: 1e5, poisson: 0.49}'
+warned "triangles of J2" "'clay' yields without any change of its volume" "triangles lock" '`formulation: mixed` keeps that away' -- \
+  --set grid.cell=triangle --set 'bodies[0].points_per_cell=3' --set 'materials.clay={law: j2, density: 1, young: 1e5, poisson: 0.3, yield_stress: 100}'
+warned "clouds of rubber" "'clay' hardly changes its volume" "clouds lock" "method gmm has no mixed form: take mpm or fem" -- --set method=gmm \
+  --set 'materials.clay={law: neo-hookean, density: 1, young: 1e5, poisson: 0.49}'
 warned "rubber by its moduli" "'clay' hardly changes its volume" -- --set 'materials.clay={law: neo-hookean, density: 1, bulk: 1e6, shear: 1e4}'
 # Cam clay with K = p (1 - kappa / v) / (kappa / v): 0.49 is K = 149 / 3 G, reached at p = 1e4 149 / 3 0.02 / 0.98 = 10136 Pa, whatever its reference.
-for ranks in 1 3; do
-  for pressure in 1.02e4 1.01e4; do
-    expect "clay under $pressure on $ranks" 0 on_ranks $ranks "$talus" check case.yaml --set loads="{}" --set "bodies[0].stress={xx: \"-$pressure\", yy: \"-$pressure\", zz: \"-$pressure\"}" \
-      --set 'materials.clay={law: modified-cam-clay, density: 1, critical_stress_ratio: 1, lambda: 0.1, kappa: 0.02, shear_modulus: 1e4, ocr: 2}'
-    if [ $pressure = 1.02e4 ]; then says err.txt "'clay' hardly changes its volume under the stress that it begins with"; else lacks err.txt "hardly changes"; fi
-  done
+for way in "1.02e4 2" "1.01e4 1"; do
+  set -- $way
+  pressure=$1
+  expect "clay under $pressure" 0 on_ranks $2 "$talus" check case.yaml --set loads="{}" --set "bodies[0].stress={xx: \"-$pressure\", yy: \"-$pressure\", zz: \"-$pressure\"}" \
+    --set 'materials.clay={law: modified-cam-clay, density: 1, critical_stress_ratio: 1, lambda: 0.1, kappa: 0.02, shear_modulus: 1e4, ocr: 2}'
+  if [ $pressure = 1.02e4 ]; then says err.txt "'clay' hardly changes its volume under the stress that it begins with"; else lacks err.txt "hardly changes"; fi
 done
-warned "mixed" -- --set formulation=mixed
 warned "a shared volume" -- --set formulation=mean-dilatation
 warned "a shared volume of triangles" "formulation 'mean-dilatation' does nothing for linear triangles" "take quadrilaterals" -- \
   --set formulation=mean-dilatation --set grid.cell=triangle --set 'bodies[0].points_per_cell=3'
@@ -126,11 +126,11 @@ expect "a shared volume by gmm" 2 "$talus" check case.yaml --set formulation=mea
 says err.txt "formulation 'mean-dilatation' shares the volume of a cell among its points, and method gmm has no cells"
 expect "a shared volume by gimp" 2 "$talus" check case.yaml --set formulation=mean-dilatation --set method=mpm --set 'basis={gimp: {}}'
 says err.txt "formulation 'mean-dilatation' takes no other basis than 'cell', not 'gimp'"
-warned "friction" -- --set materials.clay.friction_angle=20
 warned "an ordinary solid" -- --set 'materials.clay={law: neo-hookean, density: 1, young: 1e5, poisson: 0.45}'
 
 # --- a limit load: Prandtl's is 5.14 c, that is 0.514 of this one; eight cells under half the footing are 8 % too strong, four 13 % ---
-expect "beyond Prandtl's load" 1 "$talus" run case.yaml --out run --force --quiet --set formulation=mixed --set grid.size=0.125
+expect "beyond Prandtl's load" 1 "$talus" run case.yaml --out run --force --quiet --set formulation=mixed --set grid.size=0.125 \
+  --set 'grid.box={min: [0, -2], max: [3.5, 0]}' --set 'bodies[0].shape={box: {min: [0, -2], max: [3.5, 0]}}' --set 'boundary[2].on.x=3.5'
 says err.txt "This may be a limit load, at load factor 0.55" "as far as at first"
 expect "stopped for another reason" 1 "$talus" run case.yaml --out run --force --quiet --set formulation=mixed --set newton.max_iterations=2
 says err.txt "the run gave up"
@@ -176,10 +176,8 @@ loads: {gravity: [0, -10]}
 END
 shared="case.yaml:11:3: warning: 100 % of the points of 'weak' share their cells with other materials"
 warned "a layer in cells that it shares" "$shared" "six across it or more" --
-for ranks in 2 3; do
-  expect "the same on $ranks" 0 on_ranks $ranks "$talus" check case.yaml
-  says err.txt "$shared"
-done
+expect "the same on two ranks" 0 on_ranks 2 "$talus" check case.yaml
+says err.txt "$shared"
 warned "a layer of cells of its own" -- --set 'grid.size=0.5'
 warned "no strength is sought" -- --set 'analysis={type: static}'
 
@@ -199,7 +197,6 @@ loads: {gravity: [0, 0, -9.81]}
 END
 warned "a floor beside gravity" "case.yaml:10:21: warning: 'bottom' is the side of the lowest y, but gravity points along -z, where nothing is held" \
   "there the side is called 'front'" --
-warned "a floor below" -- --set 'loads.gravity=[0, -9.81, 0]'
 warned "a wall beside a floor" -- --set 'boundary[1]={on: {z: 0}, fix: [z]}'
 warned "a slope" -- --set 'loads.gravity=[0, -5, -8]'
 
@@ -210,19 +207,47 @@ says err.txt "a box has no boundary 'rigth'" "did you mean 'right'? There are: l
 expect "a list" 2 "$talus" list lawss
 says err.txt "did you mean 'laws'?"
 plate 1
+cp case.yaml geo.yaml
+# The same as two triangles, for names that are no matter of the .geo: gmsh takes as long as the rest.
+cat >plate.msh <<'END'
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+1 2 "wall"
+1 3 "edge"
+2 1 "plate"
+$EndPhysicalNames
+$Nodes
+4
+1 0 0 0
+2 3 0 0
+3 3 1 0
+4 0 1.5 0
+$EndNodes
+$Elements
+4
+1 1 2 3 3 2 3
+2 1 2 2 2 4 1
+3 2 2 1 1 1 2 3
+4 2 2 1 1 1 3 4
+$EndElements
+END
 for wrong in "grid.parameters.hh=0.1 grid.parameters.hh=0.1: error: the .geo of the case has no use for a number 'hh'|did you mean 'h'? There are: h" \
   "boundary[0].on.boundary=wal no boundary is named 'wal'|did you mean 'wall'? There are: wall, edge" \
   "loads.tractions[0].on.boundary=sky no boundary is named 'sky'|there are: wall, edge" \
   "loads.tractions[0].on.boundary=plate 'plate' is a region of cells, not a boundary|there are: wall, edge" \
   "boundary[0].on.boundary=plate 'plate' is a region of cells, not a boundary|there are: wall, edge" \
   "bodies[0].region=plat the mesh has no region 'plat'|did you mean 'plate'? There are: "; do
+  case $wrong in *hh*) cp geo.yaml case.yaml ;; *) sed 's/mesh: plate.geo.*/mesh: plate.msh}/' geo.yaml >case.yaml ;; esac
   expect "${wrong%% *}" 2 "$talus" check case.yaml --set "${wrong%% *}"
   text=${wrong#* }
   says err.txt "${text%|*}" "${text#*|}"
   lacks err.txt "prescribed by other entries" "plate$"
 done
 
-
+cp geo.yaml case.yaml
 # A .geo that gives a name a value itself does not listen; one that asks first does, and one that counts with it.
 geo=$(sed -n 's/.*mesh: \([a-z]*\.geo\).*/\1/p' case.yaml)
 cp "$geo" listens.geo
@@ -317,10 +342,8 @@ drum 1 2 3 4 >drum.msh
 warned "a drum" --
 drum 1 2 3 >drum.msh
 warned "a drum that is not closed" "case.yaml:10:21: warning: 'rim' turns but is not closed: it ends at (-1, 0) and (0, 1) m" "every line of the drum's rim" --
-for ranks in 2 3; do
-  expect "the same on $ranks ranks" 0 on_ranks $ranks "$talus" check case.yaml
-  says err.txt "'rim' turns but is not closed: it ends at (" "(-1, 0)" "(0, 1)"
-done
+expect "the same on two ranks" 0 on_ranks 2 "$talus" check case.yaml
+says err.txt "'rim' turns but is not closed: it ends at (" "(-1, 0)" "(0, 1)"
 
 # --- numbers that cannot be meant together (each by itself: input/test_case_bad) ---
 block >case.yaml
@@ -350,13 +373,13 @@ warned "nothing that acts" "nothing acts on what is here" 'weight is `loads: {gr
 warned "a velocity" -- --set 'bodies[0].velocity=[0, 1]'
 warned "weight in a later stage" -- --set 'stages=[{name: rest}, {name: fall, loads: {gravity: [0, -9.81]}}]'
 warned "nothing in any stage" "nothing acts on what is here" -- --set 'stages=[{name: rest}, {name: more}]'
-warned "weight" -- --set 'loads={gravity: [0, -9.81]}'
 warned "weight upwards" "gravity points along +y, upwards, where nothing is held" 'downwards is `gravity: [0, -9.81]`' -- \
   --set 'loads={gravity: [0, 9.81]}'
 warned "heights downwards" -- --set 'loads={gravity: [0, 9.81]}' --set 'boundary=[{on: {boundary: top}, fix: [x, y]}]' \
   --set 'bodies[0].shape={box: {min: [1, 2], max: [3, 4]}}'
 warned "ground that leans" "warning: k0 of 8: the ground would press sideways 8 times as much as it weighs" -- \
   --set 'loads={gravity: [0, -9.81]}' --set 'bodies[0].k0=8'
+only # weight is none
 
 # --- what prescribed nodes of a restored grid push passes them; a wall that does the same bears the exact force ---
 cat >case.yaml <<'END'
@@ -375,7 +398,7 @@ boundary:
 END
 warned "nodes that stay" "case.yaml:12:18: warning: material is moved by 0.8 cells along x, and the nodes that move it stay where they are" \
   "contact: bonded or stick" --
-for on in '{x: [-1, 0.01]}' '{x: [-0.5, 0.5]}' '{shape: {box: {min: [-1, 0], max: [0.6, 2]}}}'; do
+for on in '{x: [-1, 0.01]}' '{shape: {box: {min: [-1, 0], max: [0.6, 2]}}}'; do
   warned "the same nodes by $on" "warning: material is moved by 0.8 cells along x, and the nodes that move it stay where they are" -- --set "boundary[2].on=$on"
 done
 warned "what lies in the place altogether" -- --set 'boundary[2].on.x=[-1, 5]' --set 'boundary[0]={on: {boundary: top}, fix: [y]}'
@@ -451,13 +474,12 @@ boundary:
 loads: {gravity: [0, -9.81], gravity_amplitude: [[0, 0], [1, 1]]}
 END
 warned "gravity" --
-warned "gravity too late" "it is 0 until the end of the run, at t = 1 s: nothing of it ever acts" -- --set 'loads.gravity_amplitude=[[2, 0], [3, 1]]'
-warned "a tenth of gravity" "the run ends at t = 1 s, where it is 0.1: it would be 1 at t = 10 s" -- --set 'loads.gravity_amplitude=[[0, 0], [10, 1]]'
-warned "a wall too late" "the run ends at t = 1 s: wall 'gate' never stands" -- \
-  --set 'walls=[{name: gate, shape: {half-space: {point: [0, 2], normal: [0, -1]}}, from: 3}]'
-warned "diagonals of squares" "grid.diagonal has no effect here: quadrilaterals and hexahedra are not cut" -- --set grid.diagonal=left
-warned "tonnes" "'soil' weighs 2 kg a cubic metre, less than any soil" -- --set materials.soil.density=2
-warned "millimetres" "gravity of 9810 m/s2 is 1e+03 times that of the earth" -- --set 'loads.gravity=[0, -9810]'
+warned "gravity too late, a wall too late, diagonals of squares, tonnes" "it is 0 until the end of the run, at t = 1 s: nothing of it ever acts" \
+  "the run ends at t = 1 s: wall 'gate' never stands" "grid.diagonal has no effect here: quadrilaterals and hexahedra are not cut" \
+  "'soil' weighs 2 kg a cubic metre, less than any soil" -- --set 'loads.gravity_amplitude=[[2, 0], [3, 1]]' \
+  --set 'walls=[{name: gate, shape: {half-space: {point: [0, 2], normal: [0, -1]}}, from: 3}]' --set grid.diagonal=left --set materials.soil.density=2
+warned "a tenth of gravity, millimetres" "the run ends at t = 1 s, where it is 0.1: it would be 1 at t = 10 s" \
+  "gravity of 9810 m/s2 is 1e+03 times that of the earth" -- --set 'loads.gravity_amplitude=[[0, 0], [10, 1]]' --set 'loads.gravity=[0, -9810]'
 
 # --- grains that long steps shear: the axes of stretch turn within a step, and speeds are off many times as far ---
 cat >case.yaml <<'END'
@@ -531,10 +553,8 @@ warned "skew cells of fem" -- --set method=fem
 warned "skew cells, clouds" -- --set method=gmm
 mesh 0.2 0.2
 warned "narrow cells are parallelograms" --
-for ranks in 1 2; do
-  expect "uneven clouds on $ranks" 0 on_ranks $ranks "$talus" check case.yaml --set method=gmm
-  says err.txt "nodes of gmm at uneven distances: its points have from 0.025 to 0.1 m2" "fem is exact on the same mesh"
-done
+expect "uneven clouds" 0 on_ranks 2 "$talus" check case.yaml --set method=gmm
+says err.txt "nodes of gmm at uneven distances: its points have from 0.025 to 0.1 m2" "fem is exact on the same mesh"
 
 # --- a bonded wall that holds nothing ---
 cat >case.yaml <<'END'
@@ -567,22 +587,18 @@ materials: {m: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0.3}}
 loads: {tractions: [{on: {body: b}, value: [0, 1]}]}
 measures: {along: {momentum: x}, up: {momentum: y}, elastic: {energy: elastic}, mechanical: {energy: mechanical}}
 END
-for ranks in 1 2; do
-  expect "a wedge on $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out wedge --force --quiet
-  # the circumference, 1.5 + sqrt(1.36) + 0.5 + 0.6, times 1 Pa and 0.5 s
-  awk -F, 'END { exit !(($3 / 120 - 1) ^ 2 < 1e-18 && ($4 / 181.883095 - 1) ^ 2 < 1e-12 && $5 < 1e-3 && $6 < 39.6) }' wedge/history.csv ||
-    fail "$name: $(tail -n 1 wedge/history.csv)"
-done
+expect "a wedge" 0 "$talus" run case.yaml --out wedge --force --quiet
+# the circumference, 1.5 + sqrt(1.36) + 0.5 + 0.6, times 1 Pa and 0.5 s
+awk -F, 'END { exit !(($3 / 120 - 1) ^ 2 < 1e-18 && ($4 / 181.883095 - 1) ^ 2 < 1e-12 && $5 < 1e-3 && $6 < 39.6) }' wedge/history.csv ||
+  fail "$name: $(tail -n 1 wedge/history.csv)"
 # A triangle that is pulled to one side all around gains all of the impulse, however far it goes: its points' nodes, too,
 # where there is nothing around that could lead them.
 sed -i -e 's/analysis: .*/analysis: {type: explicit, end: 0.8, step: 0.01}/' -e 's/polygon: .*, material: m.*/polygon: [[0.03, 0.03], [1.03, 0.31], [0.2, 1.1]]}, material: m}]/' \
   -e 's/value: .*/value: [1000, 0]}]}/' -e 's/max: \[3, 3\]/max: [5, 3]/' -e 's/along:/tip: {displacement: x, of: {tracer: [0.2, 1.099]}}, middle: {displacement: x, of: {tracer: [0.4, 0.5]}}, along:/' case.yaml
-for ranks in 1 2; do
-  expect "a triangle on $ranks" 0 on_ranks $ranks "$talus" run case.yaml --out triangle --force --quiet
-  ! grep -q "left behind" err.txt || fail "$name: loses its load"
-  # circumference: sqrt(1 + 0.28^2) + sqrt(0.83^2 + 0.79^2) + sqrt(0.17^2 + 1.07^2); the tip is pulled ahead
-  awk -F, 'END { exit !(($5 / 2614.19441 - 1) ^ 2 < 1e-16 && $3 > $4 && $3 < 1.1 * $4) }' triangle/history.csv || fail "$name: $(tail -n 1 triangle/history.csv)"
-done
+expect "a triangle" 0 on_ranks 2 "$talus" run case.yaml --out triangle --force --quiet
+! grep -q "left behind" err.txt || fail "$name: loses its load"
+# circumference: sqrt(1 + 0.28^2) + sqrt(0.83^2 + 0.79^2) + sqrt(0.17^2 + 1.07^2); the tip is pulled ahead
+awk -F, 'END { exit !(($5 / 2614.19441 - 1) ^ 2 < 1e-16 && $3 > $4 && $3 < 1.1 * $4) }' triangle/history.csv || fail "$name: $(tail -n 1 triangle/history.csv)"
 
 # --- a pressed surface that moves, where stress beside it is and is not borne by the nodes that bear the load ---
 cat >case.yaml <<'END'
@@ -629,20 +645,16 @@ loads: {tractions: [{on: {body: stiff, x: 2}, value: [1e4, 0]}]}
 measures: {ux: {displacement: x, of: {tracer: [2, 1]}}}
 END
 flat="warning: its cells are up to 4 times as long as wide, as at (0.25, 0.0625) m: clouds of gmm are round"
-for ranks in 1 2; do
-  expect "flat cells on $ranks" 0 on_ranks $ranks "$talus" check case.yaml
-  says err.txt "case.yaml:6:5: $flat" "case.yaml:7:5: warning: its cells"
-done
+expect "flat cells" 0 on_ranks 2 "$talus" check case.yaml
+says err.txt "case.yaml:6:5: $flat" "case.yaml:7:5: warning: its cells"
 warned "hardly flat cells" -- --set grid.counts='[4, 6]'
 warned "hardly flat cells of mls" "up to 3 times as long" -- --set grid.counts='[4, 6]' --set 'basis={mls: {}}'
 warned "square cells" -- --set grid.counts='[4, 2]' --set 'basis={mls: {}}'
 warned "flat cells of fem" -- --set method=fem
 warned "flat triangles" "times as long as wide" -- --set grid.cell=triangle --set 'bodies[0].points_per_cell=3' --set 'bodies[1].points_per_cell=3'
-for ranks in 1 2; do
-  expect "layers on $ranks" 0 on_ranks $ranks "$talus" check case.yaml --set grid.counts='[8, 4]' --set materials.s.young=1e8
-  says err.txt "case.yaml:7:5: warning: 'soft' and 'stiff' share nodes, and one is 100 times as stiff: clouds of gmm reach over the seam" \
-    "hint: - {name: ..., between: [soft, stiff], contact: bonded}"
-done
+expect "layers" 0 "$talus" check case.yaml --set grid.counts='[8, 4]' --set materials.s.young=1e8
+says err.txt "case.yaml:7:5: warning: 'soft' and 'stiff' share nodes, and one is 100 times as stiff: clouds of gmm reach over the seam" \
+  "hint: - {name: ..., between: [soft, stiff], contact: bonded}"
 warned "layers not so different" -- --set grid.counts='[8, 4]'
 warned "layers that are bonded" -- --set grid.counts='[8, 4]' --set materials.s.young=1e8 \
   --set 'interfaces=[{name: seam, between: [soft, stiff], contact: bonded}]'

@@ -18,7 +18,7 @@ EOF
 rests() {
   awk -F, 'END { if (($3 ^ 2 > 1e-10) || (($4 - 1177.2) ^ 2 > 1e-10) || $5 ^ 2 > 1e-4) exit 1 }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"
 }
-for way in "gimp 1" "gimp 2" "gimp 3" "cell 1" "bspline 1" "bspline 3"; do
+for way in "gimp 2" "gimp 3" "cell 1" "bspline 1"; do
   set -- $way
   expect "a block on a smooth floor, $way" 0 on_ranks $2 "$talus" run block.yaml --out o --force --set basis=$1
   says err.txt "nothing holds 'b' in x: held in 1 direction(s) of nodes, which bear nothing"
@@ -77,8 +77,7 @@ loads: {gravity: [0, -9.81]}
 measures: {fy: {wall_force: y, of: {wall: t}}}
 output: {every: end}
 EOF
-turn
-expect "a disk in a round wall" 2 on_ranks $ranks "$talus" run disk.yaml --out o --force
+expect "a disk in a round wall" 2 on_ranks 2 "$talus" run disk.yaml --out o --force
 says err.txt "nothing holds 'b' from turning in its smooth round walls" "analysis: {unheld: hold}"
 expect "a ball in a round wall" 2 "$talus" run disk.yaml --out o --force --set kinematics=3d --set 'grid={box: {min: [-0.75, -0.75, -0.75], max: [0.75, 0.75, 0.75]}, size: 0.25}' \
   --set 'bodies[0].shape={sphere: {centre: [0.031, 0.017, 0.03], radius: 0.5}}' --set 'walls[0].shape={sphere: {centre: [0.031, 0.017, 0.03], radius: 0.5}}' --set 'loads.gravity=[0, -9.81, 0]'
@@ -89,7 +88,7 @@ expect "held by hand" 0 "$talus" run disk.yaml --out o --force --set analysis.un
 weighs 7704.7788
 expect "held by friction" 0 "$talus" run disk.yaml --out o --force --set 'walls[0].friction=0.01'
 weighs 7704.7788
-expect "a block in a trough" 0 on_ranks $ranks "$talus" run disk.yaml --out o --force --set 'bodies[0].shape={box: {min: [-0.31, -0.4], max: [0.31, -0.1]}}' \
+expect "a block in a trough" 0 "$talus" run disk.yaml --out o --force --set 'bodies[0].shape={box: {min: [-0.31, -0.4], max: [0.31, -0.1]}}' \
   --set 'walls[0].shape={circle: {centre: [0, 0], radius: 0.5}}'
 weighs 1824.66
 expect "a floor below it" 1 "$talus" run disk.yaml --out o --force --set 'walls[1]={name: w, shape: {half-space: {point: [0, -0.7], normal: [0, 1]}}}'
@@ -100,14 +99,14 @@ cat >ball.yaml <<'EOF'
 kinematics: 3d
 method: mpm
 analysis: {type: static, steps: 2, unheld: hold}
-grid: {box: {min: [-0.75, -0.75, -0.75], max: [0.75, 0.75, 0.75]}, size: 0.125}
+grid: {box: {min: [-0.75, -0.75, -0.75], max: [0.75, 0.75, 0.75]}, size: 0.1875}
 bodies: [{name: b, shape: {sphere: {centre: [0.031, 0.017, 0.043], radius: 0.5}}, material: r}]
 materials: {r: {law: neo-hookean, density: 1000, young: 1e5, poisson: 0.3}}
 loads: {pressures: [{on: {body: b}, value: 2e4}]}
 measures: {p: {stress: xx}}
 output: {every: end}
 EOF
-expect "a ball under pressure" 0 on_ranks $ranks "$talus" run ball.yaml --out o --force
+expect "a ball under pressure" 0 "$talus" run ball.yaml --out o --force
 awk -F, 'END { exit !(($3 / -2e4 - 1) ^ 2 < 1e-7) }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"
 flat="--set grid.size=[0.25,0.125,0.25] --set loads.pressures[0].value=1e3"
 expect "in flat cells" 0 "$talus" run ball.yaml --out o --force $flat
@@ -133,7 +132,7 @@ EOF
 bears() {
   awk -F, -v row="$1" -v force="$2" 'NR > 1 { f = $row } END { exit !((f / force - 1) ^ 2 < 1e-12) }' o/history.csv || fail "$name: $(tail -n 1 o/history.csv)"
 }
-for way in "fem 1" "fem 2" "mpm 1" "mpm 3" "gmm 1"; do
+for way in "fem 2" "mpm 1" "gmm 1"; do
   set -- $way
   expect "fallen onto a floor, $way" 0 on_ranks $2 "$talus" run fall.yaml --out o --force --quiet --set method=$1
   bears 4 5000
@@ -179,20 +178,16 @@ loads: {gravity: [0, -10]}
 measures: {ry: {reaction: y, of: {boundary: foot}}}
 output: {every: end}
 EOF
-for way in "fem 1" "fem 2" "fem 3" "mpm 1" "mpm 2" "gmm 1"; do
+for way in "fem 3 contact: bonded" "fem 1 friction: 0.3" "mpm 1 contact: bonded" "mpm 2 friction: 0.3" "gmm 1 contact: bonded" "gmm 1 friction: 0.3"; do
   set -- $way
-  for law in "contact: bonded" "friction: 0.3"; do
-    expect "on a plate with mass, $way, $law" 0 on_ranks $2 "$talus" run plate.yaml --out o --force --quiet --set method=$1 \
-      --set "walls[0]={name: plate, shape: {box: {min: [0, 0.5], max: [1, 0.75]}}, $law, mass: {mass: 100}}"
-    lacks err.txt "nothing holds"
-    bears 3 11000
-  done
+  expect "on a plate with mass, $way" 0 on_ranks $2 "$talus" run plate.yaml --out o --force --quiet --set method=$1 \
+    --set "walls[0]={name: plate, shape: {box: {min: [0, 0.5], max: [1, 0.75]}}, $3 $4, mass: {mass: 100}}"
+  lacks err.txt "nothing holds"
+  bears 3 11000
 done
-for ranks in 1 3; do
-  expect "without a foot" 2 on_ranks $ranks "$talus" run plate.yaml --out none --quiet --set 'boundary=[]' --set 'measures={}'
-  says err.txt "nothing holds 'below' and what it touches in x and y: a static analysis has no answer"
-  lacks err.txt "friction"
-done
+expect "without a foot" 2 on_ranks 2 "$talus" run plate.yaml --out none --quiet --set 'boundary=[]' --set 'measures={}'
+says err.txt "nothing holds 'below' and what it touches in x and y: a static analysis has no answer"
+lacks err.txt "friction"
 expect "a plate that is free to fall" 2 "$talus" run plate.yaml --out none --quiet --set 'boundary=[]' --set 'measures={}' --set 'walls[0].mass.free=[y]'
 says err.txt "nothing holds 'below' and what it touches in y:"
 expect "a plate that is free to turn" 0 "$talus" run plate.yaml --out o --force --quiet --set 'boundary=[]' --set 'measures={f: {wall_force: y, of: {wall: plate}}}' --set 'walls[0].mass.free=[rotation]'
