@@ -609,4 +609,33 @@ expect "another tolerance" 0 "$talus" run --resume short --quiet --set stages[2]
 expect "other loads" 2 "$talus" run --resume short --quiet --set stages[2].loads.gravity=[0,0]
 says err.txt "a resumed run cannot change stages[2].loads.gravity" "newton, linear, parallel, petsc" "analysis.until"
 
+# A body that a stage brings is in no wall that stood before (it was squeezed out of it, without a word)
+cat >amid.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, steps: 1}
+grid: {box: {min: [0, -0.5], max: [3, 2]}, size: 0.125}
+bodies:
+  - {name: first, shape: {box: {min: [0.25, 0], max: [1.25, 0.5]}}, points_per_cell: 4, material: rubber}
+materials:
+  rubber: {law: neo-hookean, density: 1000, young: 1e6, poisson: 0}
+walls:
+  - {name: floor, shape: {half-space: {point: [0, 0], normal: [0, 1]}}, friction: 0.5}
+loads: {gravity: [0, -9.81]}
+stages:
+  - name: one
+  - name: two
+    bodies:
+      - {name: second, shape: {box: {min: [1.75, -0.25], max: [2.25, 0.5]}}, points_per_cell: 4, material: rubber}
+END
+ranks=0
+for method in mpm fem; do
+  turn
+  expect "a body amid a wall, $method, $ranks" 1 on_ranks $ranks "$talus" run amid.yaml --out amid --force --quiet --set method=$method
+  says err.txt "wall 'floor' goes through a body at the start of the stage: the point at (" "m inside it (stage 'two')" \
+    "amid.yaml:10:5: "
+done
+sed 's/-0.25\], max: \[2.25/0], max: [2.25/' amid.yaml >beside.yaml
+expect "a body on a wall" 0 on_ranks 3 "$talus" run beside.yaml --out amid --force --quiet
+
 finish

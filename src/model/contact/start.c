@@ -1,6 +1,6 @@
 /* Walls at the start of a model, and those that a stage brings: what of the material touches them. */
 #include <string.h>
-#include "model/model_private.h"
+#include "model/stage/stage_private.h"
 
 #define THROUGH 1e-9 /* of a cell: material that reaches deeper into a wall at the start is a mistake */
 #define TOUCHES 1e-6 /* of a cell: what is so near is in contact (contact_find.c) */
@@ -88,14 +88,16 @@ static PetscBool touches(const Model *m, PetscInt k, PetscInt side, PetscInt p, 
 }
 
 /* What stands nearer to a wall than its cell's side does touches it: the body was made to fit, and its surface is taken
- * back (dent) to the wall. A point inside the wall is a mistake (inside). Says whether any touches it. */
-static PetscBool look_at_wall(Model *m, PetscInt k, PetscBool fits, Worst *inside, Worst *dent)
+ * back (dent) to the wall. A point inside the wall is a mistake (inside). Says whether any touches it. `from`, if it is
+ * not NULL, is the stage before, and bodies that were there are not looked at. */
+static PetscBool look_at_wall(Model *m, PetscInt k, PetscBool fits, const Case *from, Worst *inside, Worst *dent)
 {
   WallPlace place[WALL_SIDES];
   PetscBool any = PETSC_FALSE;
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal *x = point_real(m->points, POINT_X, p);
     if (!contact_meets_body(m->c, k, m->points->body[p])) continue;
+    if (from && !body_comes(m->c, from, m->points->body[p])) continue;
     const int side = wall_side(m->walls, k, m->time, x);
     const PetscReal far = PetscMax(contact_farthest(m->points, p), fits ? m->grid->smallest : 0);
     const PetscInt n = wall_sides(m->walls, k, m->time, x, far, side, place);
@@ -120,9 +122,10 @@ static PetscErrorCode TellThrough(const Model *m, PetscInt k, Worst *inside, Dia
   PetscCall(FindWorst(m, inside));
   if (inside->depth <= 0) PetscFunctionReturn(0);
   PetscCall(PetscSNPrintf(path, sizeof path, "walls[%d]", (int)k));
-  diag_error(diag, path, "wall '%s' goes through a body at the start: the point at (%g, %g, %g) m is %.3g m inside it",
-             m->c->walls[k].name, (double)inside->x[0], (double)inside->x[1], (double)inside->x[2],
-             (double)inside->depth);
+  diag_error(diag, path,
+             "wall '%s' goes through a body at the start%s: the point at (%g, %g, %g) m is %.3g m inside it",
+             m->c->walls[k].name, m->c->stage ? " of the stage" : "", (double)inside->x[0], (double)inside->x[1],
+             (double)inside->x[2], (double)inside->depth);
   if (inside->depth <= AMIDST * m->grid->smallest)
     diag_hint(
       diag,
@@ -200,7 +203,7 @@ PetscErrorCode WallsStart(Model *m, Diag *diag)
   PetscCall(InterfacesStart(m, diag));
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
     Worst inside = {0}, dent = {0};
-    const PetscBool any = look_at_wall(m, k, PETSC_TRUE, &inside, &dent);
+    const PetscBool any = look_at_wall(m, k, PETSC_TRUE, NULL, &inside, &dent);
     if (m->c->stage) continue; /* bodies are elsewhere */
     PetscCall(TellUntouched(m, k, any, diag));
     PetscCall(TellThrough(m, k, &inside, diag));
@@ -222,8 +225,9 @@ PetscErrorCode WallsCome(Model *m, const Case *from, Diag *diag)
   PetscFunctionBeginUser;
   for (PetscInt k = 0; k < m->c->n_walls; ++k) {
     Worst inside = {0}, dent = {0};
-    if (m->c->walls[k].absent || wall_stood(&m->c->walls[k], m->c, from)) continue;
-    (void)look_at_wall(m, k, PETSC_FALSE, &inside, &dent);
+    if (m->c->walls[k].absent) continue;
+    const Case *stood = wall_stood(&m->c->walls[k], m->c, from) ? from : NULL;
+    (void)look_at_wall(m, k, PETSC_FALSE, stood, &inside, &dent);
     PetscCall(TellThrough(m, k, &inside, diag));
   }
   PetscFunctionReturn(0);
