@@ -26,7 +26,7 @@ bears=188.3625
 near() {
   awk -F, -v f="$1" 'END { if (!($3 > f * 0.999 && $3 < f * 1.001)) { print $0; exit 1 } }' run/history.csv || fail "$name: not $1"
 }
-for ranks in 1 2 3; do
+for ranks in 1 3; do
   expect "a traction on $ranks" 0 on_ranks $ranks "$talus" run block.yaml --out run --force
   near "$bears"
 done
@@ -35,10 +35,8 @@ says run/limit.csv "control,load [],displacement [m],iterations,largest [m],stor
 says out.txt "formulation = mean-dilatation"
 expect "mean dilatation, mpm" 0 "$talus" run block.yaml --out run --force --set method=mpm
 near "$bears"
-for ranks in 2; do
-  expect "mixed on $ranks" 0 on_ranks $ranks "$talus" run block.yaml --out run --force --set formulation=mixed
-  near "$bears"
-done
+expect "mixed" 0 on_ranks 2 "$talus" run block.yaml --out run --force --set formulation=mixed
+near "$bears"
 sed 's/^loads:.*//; s/^  - {on: {boundary: bottom}, fix: \[y\]}/&\n  - {name: plate, on: {boundary: top}, displacement: {y: -0.002}}/' block.yaml >plate.yaml
 expect "a displacement" 0 "$talus" run plate.yaml --out run --force --set analysis.limit='{raise: plate, step: 0.02, tolerance: 1e-3}'
 awk -F, 'END { exit !($3 > 188.3e3 && $3 < 188.6e3) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
@@ -74,8 +72,7 @@ walls:
   - {name: pile, shape: {circle: {centre: [0, 0], radius: 1}}, adhesion: 5e3, motion: [{displacement: {x: 0.1}}]}
 measures: {limit: {limit_load: value}}
 END
-turn
-expect "a pile that adheres" 0 on_ranks $ranks "$talus" run pile.yaml --out run --force
+expect "a pile that adheres" 0 "$talus" run pile.yaml --out run --force
 lacks out.txt "no limit was found"
 awk -F, 'END { exit !($3 > 0.95 * 108.2e3 && $3 < 1.05 * 108.2e3) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
 expect "not far enough" 0 "$talus" run plate.yaml --out run --force --set analysis.limit='{raise: plate, most: 0.01}'
@@ -85,7 +82,7 @@ says err.txt "warning: no limit was found: what is told is the largest load that
 expect "a search that is ended" 0 "$talus" run block.yaml --out run --force --set 'analysis.until=[{measure: load, above: 30}]'
 says out.txt "by load = it still rises" "warning = no limit was found"
 rm -rf run
-"$talus" run block.yaml --out run --quiet --set grid.size=0.025 --set analysis.limit.step=1e-3 >out.txt 2>err.txt </dev/null &
+"$talus" run block.yaml --out run --quiet --set grid.size=0.05 --set analysis.limit.step=1e-3 >out.txt 2>err.txt </dev/null &
 name="a search that is cut off"
 for i in $(seq 400); do
   [ -s run/history.csv ] && [ "$(wc -l <run/history.csv)" -gt 2 ] && break
@@ -135,7 +132,7 @@ loads: {gravity: [0, -10]}
 measures:
   limit: {limit_load: value}
 END
-for ranks in 1 3; do
+for ranks in 1 2; do
   expect "sand on $ranks" 0 on_ranks $ranks "$talus" run sand.yaml --out run --force
   says out.txt "by load = it holds"
   awk -F, 'END { N = $3 / 5000; exit !(N > 9.13 && N < 9.17) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
@@ -143,11 +140,9 @@ done
 
 # The same plate as a rigid wall: its force; a mechanism is drawn
 sed 's/^loads:.*/walls: [{name: plate, shape: {box: {min: [-1, 1], max: [2, 1.5]}}, motion: [{displacement: {x: 0, y: -0.002}}]}]/' block.yaml >wall.yaml
-for ranks in 1 2; do
-  expect "a wall on $ranks" 0 on_ranks $ranks "$talus" run wall.yaml --out run --force --set analysis.limit='{raise: plate, step: 0.02, tolerance: 1e-3}' --set 'output.fields=[mechanism]'
-  awk -F, 'END { exit !($3 > 188.3e3 && $3 < 188.6e3) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
-done
-expect "a mechanism" 0 "$talus" plot run --field mechanism --component y --arrows --out mechanism.png
+expect "a wall" 0 on_ranks 2 "$talus" run wall.yaml --out run --force --set analysis.limit='{raise: plate, step: 0.02, tolerance: 1e-3}' --set 'output.fields=[mechanism]'
+awk -F, 'END { exit !($3 > 188.3e3 && $3 < 188.6e3) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
+expect "a mechanism" 0 "$talus" plot run --field mechanism --component y --arrows --out mechanism.png --size 320x240
 [ -s mechanism.png ] || fail "$name: no picture"
 
 # A ring of soil without friction yields as a whole under a pressure from inside of 2 c ln(b / a), 13862.94
@@ -163,10 +158,8 @@ boundary: [{on: {boundary: bottom}, fix: [y]}, {on: {boundary: top}, fix: [y]}]
 loads: {pressures: [{name: inside, on: {boundary: left}, value: 1e3}]}
 measures: {limit: {limit_load: value}}
 END
-for ranks in 1 3; do
-  expect "a pressure on $ranks" 0 on_ranks $ranks "$talus" run ring.yaml --out run --force
-  awk -F, 'END { exit !($3 > 13.862 && $3 < 13.883) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
-done
+expect "a pressure" 0 on_ranks 3 "$talus" run ring.yaml --out run --force
+awk -F, 'END { exit !($3 > 13.862 && $3 < 13.883) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
 
 # A circular footing on clay of quarters of its radius, E / c = 1e5, by a pressure: as by a traction, 6.703, in some thirty steps (1741: its force
 # was none of those that a residual is measured by, and a first guess at rest was taken for progress). With E / c = 1e4 a traction rises with
@@ -246,12 +239,10 @@ boundary: [{on: {boundary: foot}, fix: [y]}, {on: {boundary: axis}, fix: [x]}]
 loads: {pressures: [{name: p, on: {boundary: in}, value: 1e5}]}
 measures: {limit: {limit_load: value}, load: {limit_load: load}}
 END
-for ranks in 2; do
-  expect "a sphere on $ranks" 0 on_ranks $ranks timeout 120 "$talus" run sphere.yaml --out run --force --set newton.max_iterations=10
-  says out.txt "by load = it holds: as in the last 50 steps, which are tiny, it would grow by" "limit load = 4."
-  lacks out.txt "no limit was found"
-  awk -F, 'END { exit !($3 > 4.6 && $3 < 4.62 && NR < 250) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
-done
+expect "a sphere" 0 timeout 120 "$talus" run sphere.yaml --out run --force --set newton.max_iterations=10
+says out.txt "by load = it holds: as in the last 50 steps, which are tiny, it would grow by" "limit load = 4."
+lacks out.txt "no limit was found"
+awk -F, 'END { exit !($3 > 4.6 && $3 < 4.62 && NR < 250) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
 expect "a sphere in few steps" 0 "$talus" run sphere.yaml --out run --force
 says out.txt "by load = it holds: it grew by"
 awk -F, 'END { exit !($3 > 4.6 && $3 < 4.62 && NR < 60) }' run/history.csv || fail "$name: $(tail -1 run/history.csv)"
@@ -286,7 +277,7 @@ loads: {tractions: [{name: q, on: {body: b, y: 0.25}, value: [342.02, -939.69]}]
 measures: {L: {limit_load: value}}
 output: {every: end}
 END
-for way in "fem 1 2" "fem 1 3" "mpm 1 2" "mpm 3 2"; do
+for way in "fem 1 2" "fem 1 3" "mpm 2 2"; do
   set -- $way
   expect "pressed askew, $way" 0 on_ranks $2 "$talus" run askew.yaml --out askew --force --quiet --set method=$1 --set analysis.steps=$3
   awk -F, 'END { exit !($3 > 8.2 && $3 < 8.35) }' askew/history.csv || fail "$name: $(tail -n 1 askew/history.csv)"
@@ -332,14 +323,13 @@ loads: {tractions: [{name: t, on: {body: b, y: 1}, value: [0, 1e6]}]}
 measures: {limit: {limit_load: value}, load: {limit_load: load}}
 output: {every: end}
 END
-for one in "1e9 472.4" "4e8 274.9" "2e8 250"; do
-  turn
+for one in "2e8 250 1" "4e8 274.9 2" "1e9 472.4 1"; do
   set -- $one
-  expect "hardens by $1 on $ranks" 0 on_ranks $ranks "$talus" run bar.yaml --out bar --force --set materials.m.hardening=$1
+  expect "hardens by $1 on $3" 0 on_ranks $3 "$talus" run bar.yaml --out bar --force --set materials.m.hardening=$1 \
+    --set checkpoint.steps=10 --set checkpoint.keep=99
   lacks out.txt "no limit was found"
   awk -F, -v f=$2 'END { exit !($3 > f * 0.995 && $3 < f * 1.012) }' bar/history.csv || fail "$name: $(tail -n 1 bar/history.csv)"
 done
-expect "hardens, whole" 0 "$talus" run bar.yaml --out bar --force --quiet --set checkpoint.steps=10 --set checkpoint.keep=99
 rm -rf cut && cp -r bar cut
 ls cut/checkpoint_*.h5 | sed -n '8,$p' | xargs rm
 rm cut/timings.txt
