@@ -2,7 +2,7 @@
 # A damaged file of a run: `talus plot` names it and says what is wrong, exits with 2, and shows no trace of PETSc or HDF5.
 . "$(dirname "$0")/library.sh"
 command -v gnuplot >/dev/null || { echo "skipped: there is no gnuplot"; exit 77; }
-block | sed '/^  \(low\|momentum\|turn\|kinetic\|elastic\|external\|floor\):/d; s/end: 0.4/end: 0.02/; s/^output:.*/output: {every: 0.01, grid: true}/' >block.yaml
+block | sed '/^  \(low\|momentum\|turn\|kinetic\|elastic\|external\|floor\):/d; s/end: 0.4/end: 0.02/; s/^output:.*/output: {every: 0.01, grid: true}/; s/size: 0.05/size: 0.1/' >block.yaml
 expect "run" 0 "$talus" run block.yaml --out good --quiet
 expect "good" 0 "$talus" plot good --grid --time last --size 320x240
 
