@@ -2,7 +2,7 @@
 # What may be wrong with a checkpoint, a run directory or a command line when a run is to go on.
 compare="$(cd "$(dirname "$0")" && pwd)/compare.awk"
 . "$(dirname "$0")/library.sh"
-block | sed 's/end: 0.4/end: 0.08/; s/every: 0.1/every: 0.02/' >block.yaml
+block | sed 's/end: 0.4/end: 0.08/; s/every: 0.1/every: 0.02/; s/size: 0.05/size: 0.1/' >block.yaml
 expect "whole" 0 "$talus" run block.yaml --out whole --quiet --set output.grid=true --set checkpoint.steps=10 --set checkpoint.keep=3 --set newton.residual=1e-11 # ranks agree as far as Newton goes
 [ "$(ls whole/checkpoint_*.h5 | wc -l)" -eq 3 ] || fail "keep: not three checkpoints"
 newest=checkpoint_000000040.h5 older=checkpoint_000000030.h5
