@@ -76,7 +76,7 @@ set: {materials.rubber.young: $E}
 instruments:
   free: {case: free.yaml, measures: [{measure: top, times: -1e6, unit: um, target: 600, uncertainty: 0.7}]}
 points: 5
-rounds: 1
+rounds: 2
 batch: 2
 END
 expect "out of reach" 3 "$talus" calibrate far.yaml --out far
