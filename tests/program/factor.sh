@@ -406,7 +406,7 @@ END
 # few cells and tries where ranks wait for each other
 expect "a block that slides" 0 "$talus" run sliding.yaml --out run --force --quiet
 near 1.55
-expect "a block that slides on 3" 0 on_ranks 3 "$talus" run sliding.yaml --out run --force --quiet --set grid.size=0.5 \
+expect "a block that slides on 2" 0 on_ranks 2 "$talus" run sliding.yaml --out run --force --quiet --set grid.size=0.5 \
   --set 'bodies[1].shape.box.max=[2, 1]' --set 'grid.box.max=[4, 1.5]' --set analysis.reduction='{from: 1.5492, step: 0.0015, tolerance: 1e-3}'
 near 1.55
 says run/factor.csv ",no,flows,"
