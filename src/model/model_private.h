@@ -229,7 +229,7 @@ PetscErrorCode WallsStart(Model *model, Diag *diag);
 PetscErrorCode TellUntouched(const Model *model, PetscInt k, PetscBool any, Diag *diag);
 /* Was the wall there before the stage, as it is now? */
 PetscBool wall_stood(const WallSpec *wall, const Case *c, const Case *from);
-/* Collective. Walls that a stage brings, or puts elsewhere, stand where no material is; and no body that it brings is in a
+/* Collective. Walls that a stage brings, or puts elsewhere, stand where no material is, and bodies that it brings in no
  * wall. */
 PetscErrorCode WallsCome(Model *model, const Case *from, Diag *diag);
 /* Collective. The step is refused (STEP_TOO_SMALL) where a wall appears amidst material. */
