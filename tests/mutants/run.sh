@@ -30,7 +30,7 @@ mapfile -t mutants < <(cd "$source/tests/mutants" && find . -name '*.patch' | se
 patch_of() { echo "$source/tests/mutants/$1.patch"; }
 what_of() { head -n 1 "$(patch_of "$1")"; }
 is_equal() { grep -q '^Equal: ' "$(patch_of "$1")"; }
-put_in() { patch -p1 -s -f --no-backup-if-mismatch -r - -d "$2" "${@:3}" <"$source/tests/mutants/$1.patch"; }
+put_in() { patch -p1 -s -f --no-backup-if-mismatch -r - -d "$2" "${@:3}" <"$(patch_of "$1")"; }
 
 # Is each patch what it should be: a line of words, one to three lines changed in a source of its room? One awk for all,
 # since hundreds of processes cost more than what they look at.

@@ -57,8 +57,13 @@ on_ranks() {
   if [ "$ranks" -eq 1 ]; then "$@"; else mpiexec --oversubscribe -n "$ranks" "$@"; fi
 }
 
-# Of variants of one feature each has its turn: sets `ranks` to 1, 2, 3, 1, ...
-turn() { ranks=$((${ranks:-0} % 3 + 1)); }
+# Of variants of one feature each has its turn: sets `ranks` to 1, 2, 3, 1, ... Where there are many of a short run, which
+# costs less than its start, `turn N` sets it to 2 for one of N, to 3 for another one, to 1 for all others.
+turn() {
+  [ $# -gt 0 ] || { ranks=$((${ranks:-0} % 3 + 1)); return; }
+  turns=$((${turns:-0} % $1 + 1))
+  case $turns in $(($1 / 3 + 1))) ranks=2 ;; $(($1 * 3 / 4 + 1))) ranks=3 ;; *) ranks=1 ;; esac
+}
 
 # The cantilever of the case book on a coarse grid.
 cantilever() {

@@ -3,12 +3,6 @@
 # with mass that statics or a reset bring to rest, what comes late, and stresses of what ages.
 . "$(dirname "$0")/library.sh"
 
-# A start on several ranks costs more than most of these runs: of eleven variants one is on two ranks and one on three.
-turn() {
-  turns=$((${turns:-0} % 11 + 1))
-  case $turns in 4) ranks=2 ;; 9) ranks=3 ;; *) ranks=1 ;; esac
-}
-
 # A column under a constant pressure, pressed through several cells in the first stage: nothing is out of balance later.
 cat >pressed.yaml <<'END'
 kinematics: plane-strain
@@ -226,7 +220,7 @@ stages:
   - {name: faster, analysis: {end: 0.1}, loads: {gravity: [0, -20]}}
 END
 for scheme in "method=mpm" "basis={gimp: {}}" "analysis.transfer=thesis" "method=fem"; do
-  turn
+  turn 11
   expect "a jump of gravity, $scheme on $ranks" 0 on_ranks $ranks "$talus" run drop.yaml --out drop --force --quiet --set "$scheme"
   awk -F, 'function off(a, b) { return (a - b) * (a - b) > 1e-18 } $3 == 2 { fell = $4 } $3 == 3 { way = $4 }
     END { exit off(fell, -0.05) || off(way, -0.25) }' drop/history.csv || fail "$name: $(tail -n 1 drop/history.csv)"
@@ -244,7 +238,7 @@ measures: {px: {momentum: x}, py: {momentum: y}, transfer: {energy: transfer}}
 END
 # jumps NAME VARIANT MOMENTUM: of the last step, to 1e-7 of what it should be.
 jumps() {
-  turn
+  turn 11
   expect "$1 ends, $2 on $ranks" 0 on_ranks $ranks "$talus" run $1.yaml --out $1 --force --quiet --set "$2"
   awk -F, -v want="$3" -v k="$4" 'END { exit !(($k - want)^2 < (1e-7 * want)^2 && NR > 10) }' $1/history.csv ||
     fail "$name: $(tail -n 1 $1/history.csv)"
@@ -350,7 +344,7 @@ sed 's/^  - {name: clay.*/&\n  - {name: more, shape: {box: {min: [0, 2], max: [2
 # Overconsolidated clay that is pulled out of 100 kPa bears a tension along y
 sed -e 's/k0: 0.6/stress: {xx: -1e5, yy: -1e5, zz: -1e5}/; s/ocr: 2/ocr: 20/; s/^loads.*/loads: {pressures: [{on: {body: clay, x: 2}, value: 1e5, amplitude: [[0, 1], [1, 1]]}]}/' -e 's/^kinematics.*/kinematics: axisymmetric/' \
   -e 's/^boundary.*/boundary: [{on: {y: 0}, fix: [y]}, {on: {x: 0}, fix: [x]}, {on: {y: 2}, displacement: {y: 0.12}}]/' -e 's/^analysis.*/analysis: {type: static, steps: 10}/' clay.yaml >pulled.yaml
-turn
+turn 11
 expect "clay that is pulled on $ranks" 0 on_ranks $ranks "$talus" run pulled.yaml --out pulled --force
 says err.txt "100 % of 'clay' is pulled at the end"
 expect "clay that is pressed" 0 "$talus" run pulled.yaml --out pulled --force --set 'boundary[2].displacement.y=-0.12'
@@ -663,7 +657,7 @@ output: {history: {steps: 1}}
 stages: [{name: one}, {name: two, release: 0.01}]
 END
 flies() { # its settings
-  turn
+  turn 11
   expect "what flies flies on, on $ranks, $*" 0 on_ranks $ranks "$talus" run flies.yaml --out flies --force --quiet "$@"
   awk -F, 'NR > 1 && ($4 + 2500 * $1) ^ 2 > 1e-8 { bad = 1 } END { exit bad || $3 != 2 }' flies/history.csv || fail "$name: $(cut -d, -f1,3- flies/history.csv)"
 }
@@ -692,7 +686,7 @@ awk -F, 'NR > 1 && ($3 + 2500 * $1) ^ 2 > 1e-8 { bad = 1 } END { exit bad || NR 
 loads: {gravity: [0, -10]}') | sed 's/end: 0.04/end: 0.1/; s/, velocity: \[0, 1\]//' >goes.yaml
 sed '/^stages/,$d' drop.yaml >flight.yaml
 for scheme in "method=mpm" "analysis.transfer=thesis" "method=fem"; do
-  turn
+  turn 11
   expect "a run that flies, $scheme" 0 "$talus" run flight.yaml --force --quiet --out flight --set "$scheme"
   expect "one that falls, $scheme on $ranks" 0 on_ranks $ranks "$talus" run goes.yaml --force --quiet --out goes --set "$scheme"
   tail -n 1 goes/history.csv | cut -d, -f3 | awk '{ exit !(($1 - 0.05)^2 < 1e-18) }' || fail "$name: $(tail -n 1 goes/history.csv)"
@@ -725,7 +719,7 @@ sed '$a initial: {run: rests}' rests.yaml >goes.yaml
 for method in fem gmm mpm; do
   expect "what rests, $method" 0 "$talus" run rests.yaml --force --quiet --out rests --set method=$method
   for next in "{type: static, steps: 2}" "{type: dynamic, step: 0.01, end: 0.02}"; do
-    turn
+    turn 11
     expect "a run out of it, $method, $next on $ranks" 0 on_ranks $ranks "$talus" run goes.yaml --force --quiet --out goes --set method=$method --set "analysis=$next"
     awk -F, 'NR > 1 && ($3 > 10050 || $3 < 9950) { exit 1 }' goes/history.csv || fail "$name: $(cat goes/history.csv)"
   done
@@ -736,7 +730,7 @@ sed '/^boundary/d; /^initial/d; s/^measures.*/walls: [{name: floor, shape: {half
 for method in mpm fem gmm; do
   expect "what stands, $method" 0 "$talus" run stands.yaml --force --quiet --out before --set method=$method
   for next in "{type: dynamic, step: 0.01, end: 0.02}" "{type: dynamic, step: 0.01, end: 0.03}"; do
-    turn
+    turn 11
     expect "a run on a wall, $method, $next on $ranks" 0 on_ranks $ranks "$talus" run stands.yaml --force --quiet --out goes --set method=$method --set "analysis=$next" --set initial.run=before
     awk -F, 'NR > 1 && ($3 > 10050 || $3 < 9950) { exit 1 }' goes/history.csv || fail "$name: $(cat goes/history.csv)"
     rm -rf before && mv goes before
@@ -772,7 +766,7 @@ measures: {x: {reaction: x, of: {boundary: floor}}, y: {reaction: y, of: {bounda
 END
 for method in fem gmm mpm; do
   for next in "{type: static, steps: 2}" "{type: dynamic, step: 0.01, end: 0.02}"; do
-    turn
+    turn 11
     expect "more of it in a stage, $method, $next" 0 "$talus" run loaded.yaml --force --quiet --out stage --set method=$method --set "stages=[{name: a}, {name: b, analysis: $next}]"
     expect "out of a run, $method, $next on $ranks" 0 on_ranks $ranks "$talus" run loaded.yaml --force --quiet --out goes --set method=$method --set "analysis=$next" --set 'initial={run: stage, stage: a}'
     for row in 2 4; do
@@ -796,7 +790,7 @@ loads: {gravity: [0, -10]}
 END
 sed '$a boundary: [{on: {y: [0.7, 1.01]}, fix: [x, y]}]\ninitial: {run: flight}\nmeasures: {p: {momentum: y}, R: {reaction: y, of: {boundary: 0}}}' flight.yaml >caught.yaml
 for method in mpm fem; do
-  turn
+  turn 11
   expect "what flies, $method" 0 "$talus" run flight.yaml --force --quiet --out flight --set method=$method
   expect "and is caught, $method on $ranks" 0 on_ranks $ranks "$talus" run caught.yaml --force --quiet --out caught --set method=$method
   awk -F, 'NR > 2 && ($3 - p - 0.01 * ($4 - 5000)) ^ 2 > 1e-12 { exit 1 } { p = $3 }' caught/history.csv || fail "$name: $(cat caught/history.csv)"
@@ -847,7 +841,7 @@ sed '/^boundary/s/absent: true, //; /^boundary/s/x: 1/x: 0/' brought.yaml >told.
 of=
 for case in 'brought fem -0.3' 'told fem -0.3' 'brought fem -0.1' 'brought fem 0' 'brought mpm -0.3' 'told mpm -0.1'; do
   set -- $case
-  turn
+  turn 11
   [ "$of" = "$2 $3" ] || expect "given, $2 with $3" 0 "$talus" run given.yaml --out given --force --quiet --set method=$2 --set analysis.bossak=$3
   of="$2 $3"
   expect "$case, on $ranks" 0 on_ranks $ranks "$talus" run $1.yaml --out stage --force --quiet --set method=$2 --set analysis.bossak=$3
