@@ -12,7 +12,7 @@
  * All three keep the direction of s. At the corner the flow is one of both surfaces; with etabar
  * = 0 no flow of the cone leads to the apex, which is then the return by definition, as of
  * Mohr-Coulomb. */
-#include "material/algebra/hencky.h"
+#include "material/algebra/meridian.h"
 #include "material/strength.h"
 
 enum { MATCH = STRENGTH_N, GIVEN };
@@ -22,20 +22,7 @@ enum { DP_BULK, DP_MU, DP_ETA, DP_ETABAR, DP_XI_C, DP_CAP, DP_CORNER, DP_NOISE }
 
 enum { MATCH_COMPRESSION, MATCH_EXTENSION, MATCH_PLANE_STRAIN };
 
-/* What of the trial (mean stress, R_tr) is left after the return, with derivatives by both. */
-typedef struct {
-  Lanes p, ratio, p_p, p_R, R_p, R_R; /* ratio: R over R_tr */
-} Meridian;
-
-/* An option of the return where mask. */
-LANES_INLINE void meridian_take(const LaneBits *mask, const Meridian *yes, Meridian *to)
-{
-  const Lanes *from = &yes->p;
-  Lanes *at = &to->p;
-  for (size_t k = 0; k < sizeof *to / sizeof(Lanes); ++k) lanes_select(mask, &from[k], &at[k], &at[k]);
-}
-
-LANES_INLINE void meridian_return(const PetscReal *q, const Lanes *p, const Lanes *R, Meridian *m, LaneBits *plastic)
+LANES_INLINE void fall_back(const PetscReal *q, const Lanes *p, const Lanes *R, Meridian *m, LaneBits *plastic)
 {
   const Lanes none = {0}, one = none + 1.0, T = none + q[DP_CAP];
   const PetscReal K = q[DP_BULK], mu = q[DP_MU], a = 1.0 / (mu + K * q[DP_ETA] * q[DP_ETABAR]);
@@ -64,29 +51,11 @@ LANES_INLINE void meridian_return(const PetscReal *q, const Lanes *p, const Lane
 LANES_INLINE void drucker_prager(const PetscReal *q, PetscBool moduli, const Lanes e[3], const Lanes *before,
                                  Lanes *after, HenckyReturn *r)
 {
-  const PetscReal K = q[DP_BULK], mu = q[DP_MU];
-  const Lanes mean = (e[0] + e[1] + e[2]) / 3.0, p = 3.0 * K * mean, none = {0};
-  const Lanes d[3] = {e[0] - mean, e[1] - mean, e[2] - mean};
-  const Lanes norm2 = 2.0 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-  Lanes R, n[3];
-  Meridian m;
-  lanes_sqrt(&norm2, &R);
-  R *= mu;
-  meridian_return(q, &p, &R, &m, &r->plastic);
-  r->good = m.p == m.p; /* NOLINT(misc-redundant-expression): not where it is no number */
-  for (int k = 0; k < 3; ++k) {
-    r->tau[k] = m.p + 2.0 * mu * m.ratio * d[k];
-    r->elastic[k] = m.p / (3.0 * K) + m.ratio * d[k];
-    n[k] = 2.0 * mu * d[k] / (R + 1e-300); /* s / R */
-    r->r[k] = 2.0 * mu * m.ratio;
-  }
-  after[0] = before[0] + (R - m.ratio * R) / (sqrt(3.0) * mu);
-  lanes_select(&r->plastic, &after[0], &before[0], &after[0]);
-  if (!moduli) return;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      r->D[3 * i + j] = K * m.p_p + mu * m.p_R * n[j] + K * m.R_p * n[i] + mu * (m.R_R - m.ratio) * n[i] * n[j] +
-                        2.0 * mu * m.ratio * ((i == j ? 1.0 : 0.0) - 1.0 / 3.0) + none;
+  MeridianTrial trial;
+  Meridian left;
+  meridian_trial(q[DP_BULK], q[DP_MU], e, &trial);
+  fall_back(q, &trial.p, &trial.R, &left, &r->plastic);
+  meridian_finish(q[DP_BULK], q[DP_MU], moduli, &trial, &left, before, after, r);
 }
 
 HENCKY_UPDATE(drucker_prager, 1)
@@ -104,12 +73,9 @@ static void energies(const PetscReal *q, PetscInt n, PetscInt stride, const Pets
 /* PETSC_FALSE outside the yield surface. */
 static PetscBool initial_stress(const PetscReal *q, const PetscReal sigma[6], PetscReal *state)
 {
-  PetscReal tau[3], norm2 = 0.0;
-  hencky_stress(lame(q), q[DP_MU], sigma, tau, state);
-  state[6] = 0.0;
-  const PetscReal p = (tau[0] + tau[1] + tau[2]) / 3.0;
-  for (int a = 0; a < 3; ++a) norm2 += 0.5 * PetscSqr(tau[a] - p);
-  const PetscReal R = sqrt(norm2), noise = q[DP_NOISE] + 8.0 * PETSC_MACHINE_EPSILON * (R + fabs(p) + q[DP_XI_C]);
+  PetscReal p, R;
+  meridian_initial(q[DP_BULK], q[DP_MU], sigma, state, &p, &R);
+  const PetscReal noise = q[DP_NOISE] + 8.0 * PETSC_MACHINE_EPSILON * (R + fabs(p) + q[DP_XI_C]);
   return R + q[DP_ETA] * p - q[DP_XI_C] <= noise && p - q[DP_CAP] <= noise;
 }
 

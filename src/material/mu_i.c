@@ -13,7 +13,7 @@
  * is pulled falls apart. */
 #include <math.h>
 #include <string.h>
-#include "material/algebra/hencky.h"
+#include "material/algebra/meridian.h"
 
 enum { STATIC, LIMIT, NUMBER, SIZE, GRAINS, GIVEN };
 
@@ -48,12 +48,8 @@ LANES_INLINE void flow(const PetscReal *q, const Lanes *P, const Lanes *R, Flow 
   f->by_P = -G * (by_P - q[MU_STATIC] * by_e);
 }
 
-/* What is left of the trial (p, R), with derivatives by both: grains that are pulled come apart, others flow. */
-typedef struct {
-  Lanes p, R, p_p, R_p, R_R;
-} Left;
-
-LANES_INLINE void fall_back(const PetscReal *q, const Lanes *p, const Lanes *R, Left *left, LaneBits *plastic)
+/* Grains that are pulled come apart, others flow. */
+LANES_INLINE void fall_back(const PetscReal *q, const Lanes *p, const Lanes *R, Meridian *left, LaneBits *plastic)
 {
   const Lanes none = {0}, one = none + 1.0;
   Lanes size, P;
@@ -64,45 +60,22 @@ LANES_INLINE void fall_back(const PetscReal *q, const Lanes *p, const Lanes *R, 
   lanes_select(&presses, &size, &none, &P);
   const LaneBits shears = ~opens & ~still & (*R - q[MU_STATIC] * P > noise);
   *plastic = shears | opens;
-  *left = (Left){*p, *R, one, none, one};
+  *left = (Meridian){*p, one, one, none, none, one};
   if (!lanes_any(plastic)) return;
   flow(q, &P, R, &f);
-  f.by_P = -f.by_P; /* by p */
-  lanes_select(&shears, &f.left, &left->R, &left->R);
-  lanes_select(&shears, &f.by_P, &left->R_p, &left->R_p);
-  lanes_select(&shears, &f.by_R, &left->R_R, &left->R_R);
-  Lanes *all = &left->p;
-  for (size_t k = 0; k < sizeof *left / sizeof(Lanes); ++k) lanes_select(&opens, &none, &all[k], &all[k]);
+  const Meridian flows = {*p, f.left / (*R + 1e-300), one, none, -f.by_P, f.by_R}, apart = {none};
+  meridian_take(&shears, &flows, left);
+  meridian_take(&opens, &apart, left);
 }
 
 LANES_INLINE void mu_i(const PetscReal *q, PetscBool moduli, const Lanes e[3], const Lanes *before, Lanes *after,
                        HenckyReturn *r)
 {
-  const PetscReal K = q[MU_BULK], G = q[MU_SHEAR];
-  const Lanes mean = (e[0] + e[1] + e[2]) / 3.0, p = 3.0 * K * mean, none = {0}, one = none + 1.0;
-  const Lanes d[3] = {e[0] - mean, e[1] - mean, e[2] - mean};
-  const Lanes norm2 = 2.0 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-  Lanes R, n[3];
-  Left left;
-  lanes_sqrt(&norm2, &R);
-  R *= G;
-  fall_back(q, &p, &R, &left, &r->plastic);
-  Lanes ratio = left.R / (R + 1e-300);
-  lanes_select(&r->plastic, &ratio, &one, &ratio);
-  r->good = p == p; /* NOLINT(misc-redundant-expression): not where it is no number */
-  for (int k = 0; k < 3; ++k) {
-    r->tau[k] = left.p + 2.0 * G * ratio * d[k];
-    r->elastic[k] = left.p / (3.0 * K) + ratio * d[k];
-    n[k] = 2.0 * G * d[k] / (R + 1e-300); /* s / R */
-    r->r[k] = 2.0 * G * ratio;
-  }
-  after[0] = before[0] + (R - left.R) / (sqrt(3.0) * G);
-  lanes_select(&r->plastic, &after[0], &before[0], &after[0]);
-  if (!moduli) return;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      r->D[3 * i + j] = K * left.p_p + K * left.R_p * n[i] + G * (left.R_R - ratio) * n[i] * n[j] +
-                        2.0 * G * ratio * ((i == j ? 1.0 : 0.0) - 1.0 / 3.0) + none;
+  MeridianTrial trial;
+  Meridian left;
+  meridian_trial(q[MU_BULK], q[MU_SHEAR], e, &trial);
+  fall_back(q, &trial.p, &trial.R, &left, &r->plastic);
+  meridian_finish(q[MU_BULK], q[MU_SHEAR], moduli, &trial, &left, before, after, r);
 }
 
 HENCKY_UPDATE(mu_i, 1)
@@ -123,12 +96,9 @@ static void energies(const PetscReal *q, PetscInt n, PetscInt stride, const Pets
 /* PETSC_FALSE where it would flow, or is pulled. */
 static PetscBool initial_stress(const PetscReal *q, const PetscReal sigma[6], PetscReal *state)
 {
-  PetscReal tau[3], norm2 = 0.0;
-  hencky_stress(lame(q), q[MU_SHEAR], sigma, tau, state);
-  state[6] = 0.0;
-  const PetscReal p = (tau[0] + tau[1] + tau[2]) / 3.0;
-  for (int a = 0; a < 3; ++a) norm2 += 0.5 * PetscSqr(tau[a] - p);
-  const PetscReal R = sqrt(norm2), noise = q[MU_NOISE] + 8.0 * PETSC_MACHINE_EPSILON * (R + fabs(p));
+  PetscReal p, R;
+  meridian_initial(q[MU_BULK], q[MU_SHEAR], sigma, state, &p, &R);
+  const PetscReal noise = q[MU_NOISE] + 8.0 * PETSC_MACHINE_EPSILON * (R + fabs(p));
   return R + q[MU_STATIC] * p <= noise && p <= noise;
 }
 
