@@ -126,13 +126,19 @@ void contact_balance(const Contact *s, const ContactPoint *c, PetscReal f[3])
   for (int d = 0; d < 3; ++d) f[d] -= s->share.back * c->stays * c->last[d];
 }
 
+/* A force that rises by more than that in a step has begun in it. */
+#define AT_ONCE 1.2
+
+/* The mean of a step is the force half a step before its end, where accelerations stand: by which it had risen since the
+ * last mean, half of that is added. What remembered the mean alone drove whatever swings on a wall (docs/theory.md,
+ * section 93). */
 PetscReal contact_stays(const Contact *s, const ContactPoint *c)
 {
   const PetscReal now = s->share.mean * c->now.pressure;
   PetscReal before = 0;
   for (int d = 0; d < 3; ++d) before += c->last[d] * c->push[d];
   if (!s->share.inertia) return 1;
-  return now == 0 ? 0 : PetscMax(0, PetscMin(1, before / now));
+  return now == 0 ? 0 : PetscMax(0, PetscMin(1.5 - 0.5 * before / now, AT_ONCE * before / now));
 }
 
 void contact_excess(const Contact *s, const ContactPoint *c, PetscReal f[3])

@@ -129,10 +129,16 @@ void rigid_lever(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3
 
 void rigid_sweep(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal swept[3])
 {
-  PetscReal lever[3];
-  rigid_lever(b, x0, x1, lever);
-  vector_cross(b->q + 3, lever, swept);
-  for (int d = 0; d < 3; ++d) swept[d] += b->q[d];
+  PetscReal lever[3], turned[3];
+  if (b->dt > 0) {
+    rigid_lever(b, x0, x1, lever);
+    vector_cross(b->q + 3, lever, turned);
+    for (int d = 0; d < 3; ++d) swept[d] = b->q[d] + turned[d];
+    return;
+  }
+  own_lever(b, 0, x0, lever);
+  turn_by(b->q + 3, lever, turned);
+  for (int d = 0; d < 3; ++d) swept[d] = b->q[d] + turned[d] - lever[d];
 }
 
 void rigid_velocity(const RigidWall *b, const PetscReal arm[3], PetscReal v[3])

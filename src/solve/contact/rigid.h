@@ -68,7 +68,8 @@ void rigid_place(const RigidWall *b, Walls *walls);
 static inline PetscBool rigid_has(const RigidWall *b, int i) { return b->stands && b->free[i]; }
 
 /* Of a contact point that goes from x0 to x1: lever about the centre where forces act, and what the wall's matter
- * moves by there: the work of contact is that of forces on d and of torques on theta. */
+ * moves by there: in dynamics by theta across the lever, so that the work of contact is that of forces on d and of
+ * torques on theta; in statics by the turn itself, or what is bonded would be pinched by theta^2 / 2 in each step. */
 void rigid_lever(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal lever[3]);
 void rigid_sweep(const RigidWall *b, const PetscReal x0[3], const PetscReal x1[3], PetscReal swept[3]);
 /* About which axis, and how far, it turns at the end of the step for a unit of theta. */

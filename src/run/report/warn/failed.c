@@ -20,8 +20,9 @@ PetscErrorCode WarnOfFailed(Model *m, Diag *diag)
   Energies e;
 
   PetscFunctionBeginUser;
-  if (m->c->analysis.type != ANALYSIS_STATIC || !PetscIsNanReal(m->raised.value) || grows_stronger(m))
+  if (m->c->analysis.type != ANALYSIS_STATIC || !specs_yield(m->c->n_materials, m->c->materials))
     PetscFunctionReturn(0);
+  if (!PetscIsNanReal(m->raised.value) || grows_stronger(m)) PetscFunctionReturn(0);
   PetscCall(ModelEnergies(m, &e));
   const PetscBool pushed = (PetscBool)(PetscAbsReal(e.boundary) > 0.01 * PetscAbsReal(e.external));
   if (pushed || e.elastic <= 0 || e.dissipated <= FAILED * e.elastic) PetscFunctionReturn(0);
