@@ -375,4 +375,30 @@ for first in 'b, c' 'c, b'; do
   near momentum "$(last 3)" 298 0.05
 done
 
+# What has flowed keeps the surface that it had, as far as it has grown: a block of metal pressed to 0.7 between smooth
+# platens, and drawn along by its adhesion
+cat >pressed.yaml <<'END'
+kinematics: plane-strain
+method: mpm
+analysis: {type: static, end: 1, steps: 20}
+grid: {box: {min: [0, 0], max: [2, 1.25]}, size: 0.125}
+bodies: [{name: block, shape: {box: {min: [0, 0], max: [1, 1]}}, points_per_cell: 4, material: metal}]
+materials: {metal: {law: j2-log, density: 8000, young: 1e9, poisson: 0.3, yield_stress: 1e6}}
+walls:
+  - name: platen
+    shape: {box: {min: [-1, 1], max: [4, 2]}}
+    motion: [{displacement: {y: -0.3}, amplitude: [[0, 0], [0.75, 1], [1, 1]]}, {displacement: {x: 0.1}, amplitude: [[0, 0], [0.75, 0], [1, 1]]}]
+    adhesion: 1e4
+boundary: [{on: {x: 0}, fix: [x]}, {on: {y: 0}, fix: [y]}]
+measures: {area: {contact: area, of: {wall: platen}}, along: {wall_force: x, of: {wall: platen}}}
+output: {fields: [stress], every: end}
+END
+# sqrt(J) / 0.7 of the 1 m that it was, J - 1 = -5.6e-4 by the mean stress
+for row in "mpm 1.25 2" "gmm 1 1"; do
+  set -- $row
+  expect "the area of what has flowed, $1" 0 on_ranks $3 "$talus" run pressed.yaml --out run --force --quiet --set method=$1 --set "grid.box={min: [0, 0], max: [$(awk -v m=$1 'BEGIN {print m == "mpm" ? 2 : 1}'), $2]}"
+  near area "$(last 3)" 1.4275 5e-3
+  near along "$(last 4)" 14275 5e-3
+done
+
 finish

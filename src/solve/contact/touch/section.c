@@ -122,38 +122,43 @@ ContactDepth contact_depth(const NodalScene *scene, PetscInt p, const PetscReal 
   return ahead > LOOKS * contact_reach(F, n, first, none, points->dim) ? CONTACT_OUTSIDE : CONTACT_INSIDE;
 }
 
-/* A piece of matter in the section (in space: of it), of the volume of the point, and by how much more a surface of it
- * that looks at n is than such a piece has: Nanson's J |F^-T N|, N along F^T n, of a piece as it was at the start. In
- * the plane that is a length, whatever the thickness, or the circle, has grown by. Of what has flowed it is one that
- * has no shape, as it is now. */
-static PetscReal piece_of(const Points *points, PetscInt p, const PetscReal n[3], PetscBool torn, PetscReal *grown)
+/* By how much more a surface of it that looks at n is than it was at the start: Nanson's J |F^-T N|, N along F^T n. In
+ * the plane that is a length, whatever the thickness, or the circle, has grown by. */
+static PetscReal growth_of(const Points *points, PetscInt p, const PetscReal n[3])
 {
   static const PetscReal none[3] = {0, 0, 0};
-  const PetscReal J = points->real[POINT_J][p], volume = points->real[POINT_VOLUME][p];
   PetscReal F[9];
-  *grown = 1;
-  if (torn) return J * volume;
   point_F(points, p, F);
-  const PetscReal thicker = points->dim == 2 ? F[8] : 1;
-  *grown = J / (thicker * contact_reach(F, n, 1, none, 0));
-  return thicker * volume;
+  return points->real[POINT_J][p] / ((points->dim == 2 ? F[8] : 1) * contact_reach(F, n, 1, none, 0));
+}
+
+/* A piece of matter in the section (in space: of it), of the volume of the point, as it was at the start; of what has
+ * flowed one that has no shape, as it is now. */
+static PetscReal piece_of(const Points *points, PetscInt p, PetscBool torn)
+{
+  PetscReal F[9];
+  point_F(points, p, F);
+  return (torn ? points->real[POINT_J][p] : points->dim == 2 ? F[8] : 1) * points->real[POINT_VOLUME][p];
 }
 
 /* What of its body's surface the point was given, if it was. Else a part of the point's volume that has the shape of
- * its cell, and has turned with the matter; without one, of a square or cube. */
+ * its cell, and has turned with the matter; without one, of a square or cube. Either has grown with the matter; but
+ * of what has flowed, and stood before no surface that looks at n now, nobody knows by how much. */
 PetscReal contact_section(const NodalScene *scene, PetscInt p, const PetscReal n[3], const PetscReal radius[2])
 {
   const Grid *grid = scene->grid;
   const Points *points = scene->points;
   const BodySpec *body = scene->c->bodies + points->body[p];
   const PetscReal power = (PetscReal)(grid->dim - 1) / (PetscReal)grid->dim;
-  const PetscBool torn = is_torn(scene, p);
-  PetscReal x[CELL_MAX_NODES * 3], N[3], grown;
-  const PetscReal volume = piece_of(points, p, n, torn, &grown) / kinematics_weight(scene->c->kinematics, radius[0]);
-  const PetscReal square = PetscPowReal(volume, power), face = contact_face(points, p, n);
-  grown *= kinematics_weight(scene->c->kinematics, PetscMax(radius[1], LEAST * radius[0]));
-  const PetscReal given = given_face(points, p);
-  if (face > AWAY * given) return face * grown;
+  const PetscReal face = contact_face(points, p, n), given = given_face(points, p);
+  const PetscBool looks = (PetscBool)(face > AWAY * given);
+  const PetscBool torn = (PetscBool)(is_torn(scene, p) && !looks && !stands_before(scene, p, n));
+  PetscReal x[CELL_MAX_NODES * 3], N[3];
+  const PetscReal volume = piece_of(points, p, torn) / kinematics_weight(scene->c->kinematics, radius[0]);
+  const PetscReal square = PetscPowReal(volume, power);
+  const PetscReal grown = (torn ? 1 : growth_of(points, p, n)) *
+                          kinematics_weight(scene->c->kinematics, PetscMax(radius[1], LEAST * radius[0]));
+  if (looks) return face * grown;
   if (given > 0 && !torn) return PetscMax(face, LEAST * square) * grown;
   if (grid->cloud || points->cell[p] < 0 || body->mesh) return square * grown;
   const Cell *cell = grid_cell(grid, points->cell[p]);
