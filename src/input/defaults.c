@@ -53,13 +53,15 @@ void default_stabilisation(const YamlNode *given, Case *c)
 
 /* What only swings, turns and bounces keeps its energy by gradients that points carry (docs/experiments/basis.md,
  * "Defaults once more"), and in explicit steps its spin; what flows gains nothing, and explicitly goes too far. What
- * slides with friction and nothing that damps it squeals, and then slides too easily. */
+ * slides with friction and nothing that damps it squeals, and then slides too easily; but splines that hand over means
+ * shake where they rub, even at rest (docs/theory.md, section 93). */
 const char *default_transfer(const Case *c, const char **why)
 {
   const AnalysisSpec *a = &c->analysis;
   const Method *method = c->method ? method_find(c->method) : NULL;
   const Transfer *thesis = transfers[0], *slopes = transfer_find("consistent");
-  const PetscBool implicit = a->type == ANALYSIS_DYNAMIC;
+  const Basis *basis = basis_find(c->basis.kind);
+  const PetscBool implicit = a->type == ANALYSIS_DYNAMIC, rubs = implicit && case_has_contact(c, CONTACT_FRICTION);
   const char *ignored;
   if (!why) why = &ignored;
   *why = "";
@@ -68,10 +70,10 @@ const char *default_transfer(const Case *c, const char **why)
   *why = ", the default where a law yields";
   if (specs_yield(c->n_materials, c->materials)) return thesis->name;
   *why = ", the default with friction";
-  if (implicit && case_has_contact(c, CONTACT_FRICTION)) return thesis->name;
+  if (rubs && !(basis && basis->ends_at_held)) return thesis->name;
   *why = "; consistent, which keeps more energy, goes with scheme midpoint";
-  if (implicit && !method_transfers(c, slopes, basis_find(c->basis.kind))) return thesis->name;
-  *why = implicit ? ", the default where no law yields and nothing rubs" : ", the default where no law yields";
+  if (implicit && !method_transfers(c, slopes, basis)) return thesis->name;
+  *why = implicit && !rubs ? ", the default where no law yields and nothing rubs" : ", the default where no law yields";
   return slopes->name;
 }
 

@@ -97,6 +97,8 @@ static const struct {
   {MOVING("mpm", "") YIELDS, "thesis", "thesis, the default where a law yields; scheme newmark"},
   {MOVING("mpm", "") WALL("frictionless"), "consistent", "consistent, the default"},
   {MOVING("mpm", "") WALL("friction, friction: 0.1"), "thesis", "thesis, the default with friction; scheme newmark"},
+  {MOVING("mpm", "") "basis: bspline\n" WALL("friction, friction: 0.1"), "consistent",
+   "consistent, the default where no law yields; scheme midpoint"},
   /* pressures and damped schemes have no forces in the middle of a step; with functions of cells they need none */
   {MOVING("mpm", ", bossak: -0.1"), "thesis", "thesis; consistent, which keeps more energy, goes with scheme midpoint"},
   {MOVING("mpm", ", gamma: 0.6, beta: 0.4"), "thesis", "thesis; consistent, which"},

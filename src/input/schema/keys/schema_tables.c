@@ -155,7 +155,8 @@ static const SchemaEntry analysis_entries[] = {
   KEY("transfer", WORD_TEXT, NULL, "mpm: what nodes take of the points' motion, see `talus list transfers`",
       .registry = (const void *const *)transfers,
       .note = "consistent where no law yields and nothing rubs; else thesis, and with basis gimp and bspline where "
-              "scheme midpoint does not go (mixed, bossak, beta, gamma); explicit with friction: consistent",
+              "scheme midpoint does not go (mixed, bossak, beta, gamma); with friction consistent in explicit steps, "
+              "and with basis bspline",
       AT(AnalysisSpec, transfer)),
   KEY(
     "keep_velocity", BOOLEAN, NULL,
