@@ -35,7 +35,7 @@ typedef struct {
   const PetscReal *pressure; /* mixed: n_nodes, the unknown pressure over pressure_scale, m */
   /* mixed: Pa/m, gives both unknowns the same unit, and both equations N */
   PetscReal pressure_scale;
-  PetscReal alpha;          /* mixed: stabilisation of the pressure is alpha / G */
+  PetscReal alpha; /* mixed: pressures that vary inside a cell are held by alpha / G, or more (material/pressure.h) */
   const PetscReal *gravity; /* mixed: m/s2, three numbers, */
   const PetscReal *pull;    /* n_points x 3, what acts per mass besides, or NULL, */
   const PetscBool *weighs;  /* and of which bodies pressures bear all that */

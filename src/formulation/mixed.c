@@ -109,7 +109,7 @@ KERNEL void add_point(const int dim, const int nn, const PetscBool hoop, const W
   add_internal_force(dim, nn, hoop, run.g[0], b->s.tau + 6 * k, volume, w->u.f);
   add_mass(nn, N, mass, lumping, w->u.M);
   row_add(nn, scaled * (b->s.theta[k] - b->p[k] * material->compliance), N, w->fp);
-  const PetscReal softness = in->alpha / material->elastic.shear;
+  const PetscReal softness = point_softness(in, material, p);
   w->hold += softness * volume;
   point_weight(dim, in, p, weight);
   for (int d = 0; d < dim; ++d) w->weight[d] += softness * mass * weight[d];

@@ -147,7 +147,7 @@ KERNEL void mixed_point(const int dim, const PetscBool hoop, const WeakFormInput
   for (PetscInt I = 0; out->volume && I < u->nn; ++I)
     out->volume[u->node[I]] += scaled * (b->s.theta[k] - b->p[k] * material->compliance) * u->N[I];
   if (u->soft > 0) cloud_hold(dim, in, u, out->force);
-  point_project(dim, hoop, in, p, in->alpha / material->elastic.shear, out->slot + slot, u, out);
+  point_project(dim, hoop, in, p, point_softness(in, material, p), out->slot + slot, u, out);
   if (tie > 0) hold_cut(dim, in, tie * scale * scale, out->slot + slot, u, out);
   if (!out->values) return;
   for (int j = 0; j < gradient_rows(dim, hoop); ++j)

@@ -176,6 +176,8 @@ typedef struct {
   PetscBool mixed;      /* is the pressure an unknown of its own? then the following count: */
   VolumeLaw volume;     /* how the mixed formulation takes the law apart */
   PetscReal compliance; /* 1 / K, 1/Pa: 0 if exactly incompressible */
+  /* where points move through cells: which number of the state, from 1, is its plastic strain; 0: none */
+  PetscInt flow;
   /* the parameters with K = G, where the mean stress is taken away again */
   PetscReal deviatoric[LAW_MAX_PARAMETERS];
 } Material;

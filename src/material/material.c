@@ -246,9 +246,20 @@ PetscBool materials_yield(PetscInt n, const Material *materials)
   return PETSC_FALSE;
 }
 
-static PetscErrorCode Resolve(const MaterialSpec *spec, PetscBool mixed, Diag *diag, Material *material)
+/* Points of mpm move through cells, and by what they flow their pressures are held less (material/pressure.h); where
+ * flow moves the volume, too, it is the law that says what becomes of a strain that the pressure does not explain. */
+static PetscInt find_flow(const Case *c, const Material *m)
 {
-  const Resolver r = {spec, diag, mixed};
+  PetscInt n = 1;
+  if (!m->mixed || m->volume == VOLUME_COUPLED || !c->method || strcmp(c->method, "mpm")) return 0;
+  for (const LawField *f = m->law->fields; f->name; n += f++->components)
+    if (!strcmp(f->name, "equivalent_plastic_strain")) return n;
+  return 0;
+}
+
+static PetscErrorCode Resolve(const Case *c, const MaterialSpec *spec, Diag *diag, Material *material)
+{
+  const Resolver r = {spec, diag, case_is_mixed(c)};
   PetscReal *given = material->given;
   const PetscInt before = diag_errors(diag);
 
@@ -271,6 +282,7 @@ static PetscErrorCode Resolve(const MaterialSpec *spec, PetscBool mixed, Diag *d
   material->wave_modulus = wave_modulus(&material->elastic, r.mixed);
   material->law->prepare(&material->elastic, given, material->parameters);
   if (r.mixed) prepare_mixed(&r, given, material);
+  material->flow = find_flow(c, material);
   PetscFunctionReturn(0);
 }
 
@@ -284,7 +296,7 @@ PetscErrorCode MaterialAt(const Case *c, PetscInt index, PetscReal t, Diag *diag
   for (PetscInt k = 0; k < spec.n_parameters; ++k)
     spec.parameters[k].value *= case_material_factor(c, index, spec.parameters[k].name, t);
   spec.density *= case_material_factor(c, index, "density", t);
-  PetscCall(Resolve(&spec, case_is_mixed(c), diag, material));
+  PetscCall(Resolve(c, &spec, diag, material));
   PetscCall(PetscFree(spec.parameters));
   PetscFunctionReturn(0);
 }
@@ -323,7 +335,7 @@ PetscErrorCode MaterialResolve(const Case *c, PetscInt index, Diag *diag, Materi
   PetscCheck(index >= 0 && index < c->n_materials, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "no material %" PetscInt_FMT, index);
   const MaterialSpec *spec = &c->materials[index];
-  PetscCall(Resolve(spec, case_is_mixed(c), diag, material));
+  PetscCall(Resolve(c, spec, diag, material));
   if (material->law) check_amplitudes(c, index, material, diag);
   for (PetscInt k = 0; k < spec->n_amplitudes; ++k) { /* between these times numbers are between those of them */
     const Amplitude *a = &spec->amplitudes[k].amplitude;

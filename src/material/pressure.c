@@ -1,4 +1,5 @@
 #include "material/pressure.h"
+#include "material/algebra/invariants.h"
 #include "material/algebra/shape.h"
 
 /* J^e before the flow of this increment, from the old state. */
@@ -98,6 +99,13 @@ PetscReal pressure_of_state(const Material *m, const PetscReal *state, const Pet
   m->law->volume(1, state, &J);
   if (m->volume == VOLUME_COUPLED) return log(J) / m->compliance;
   return m->volume == VOLUME_LINEAR ? q / J : q;
+}
+
+PetscReal pressure_softness(const Material *m, const PetscReal *state, const PetscReal tau[6])
+{
+  const PetscReal shear = m->elastic.shear, flow = m->flow ? 3 * shear * state[m->flow - 1] : 0;
+  if (!(flow > 0)) return 1 / shear;
+  return (1 + PetscMin(flow / stress_deviatoric(tau), MOST_SOFTENED - 1)) / shear;
 }
 
 PetscReal pressure_energy(const Material *m, const PetscReal *state, PetscReal p)

@@ -33,6 +33,12 @@ LawStatus pressure_update(const Material *material, LawUpdate update, PetscInt n
  * volume of its state. */
 PetscReal pressure_of_state(const Material *material, const PetscReal *state, const PetscReal tau[6]);
 
+/* What the stabilisation holds pressures by that vary inside a cell, over its alpha, 1/Pa: of the state and Kirchhoff
+ * stress at the start of a step. 1 / G; where points that flow move through cells, the shape that they have gained by
+ * that over their stress, up to MOST_SOFTENED times as much (docs/theory.md, section 92). */
+#define MOST_SOFTENED 16
+PetscReal pressure_softness(const Material *material, const PetscReal *state, const PetscReal tau[6]);
+
 /* Stored energy per undeformed volume: that of shape from the state, that of volume from the
  * pressure after the flow. */
 PetscReal pressure_energy(const Material *material, const PetscReal *state, PetscReal p);

@@ -132,10 +132,39 @@ static void test_energy(void **state)
   }
 }
 
+/* Pressures that vary inside a cell are held by 1 / G; of what has flowed at points that move through cells by its
+ * shape over its stress, but by no more than MOST_SOFTENED / G. */
+static void test_softness(void **state)
+{
+  const PetscReal tau[6] = {2e5, -1e5, -1e5}, none[6] = {0}; /* q = 3e5 */
+  const char *const methods[] = {"fem", "mpm"};
+  Diag *diag;
+  (void)state;
+  assert_int_equal(mixed_material(law_find("j2-log")).flow, 0);
+  CALL(DiagCreate(&diag));
+  for (int k = 0; k < 2; ++k) {
+    MaterialSpec spec = {.name = (char *)"m", .law = (char *)"j2-log", .density = 1};
+    NamedValue given[] = {{(char *)"young", 1e6}, {(char *)"poisson", 0.25}, {(char *)"yield_stress", 3e5}};
+    spec.n_parameters = 3, spec.parameters = given;
+    const Case c = {.method = (char *)methods[k], .formulation = (char *)"mixed", .n_materials = 1, .materials = &spec};
+    PetscReal s[LAW_MAX_STATE];
+    Material m;
+    CALL(MaterialResolve(&c, 0, diag, &m));
+    law_initial_state(m.law, s);
+    ASSERT_NEAR(pressure_softness(&m, s, tau) * 4e5, 1, 1e-14); /* G */
+    assert_true((m.flow > 0) == k);
+    if (!m.flow) continue;
+    s[m.flow - 1] = 0.5;
+    ASSERT_NEAR(pressure_softness(&m, s, tau) * 4e5, 1 + 4e5 * 3 * 0.5 / 3e5, 1e-14);
+    ASSERT_NEAR(pressure_softness(&m, s, none) * 4e5, MOST_SOFTENED, 1e-13);
+  }
+  CALL(DiagDestroy(&diag));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_scale), cmocka_unit_test(test_volume_is_kept),
-                                     cmocka_unit_test(test_energy)};
+                                     cmocka_unit_test(test_energy), cmocka_unit_test(test_softness)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() ? 1 : failed;

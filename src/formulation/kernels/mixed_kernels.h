@@ -5,6 +5,7 @@
  * displacement, Kpp nn rows. */
 #pragma once
 #include "formulation/kernels/displacement_kernels.h"
+#include "material/pressure.h"
 
 /* Polynomial pressure projection: integral of (N_I - mean)(N_J - mean) over a cell of volume 1,
  * on the reference cell. On a triangle (2 on the diagonal, -1 beside it) / 36, on a tetrahedron
@@ -18,6 +19,15 @@ KERNEL PetscReal projection_entry(const int dim, const int nn, int I, int J)
   PetscReal product = 1.0;
   for (int d = 0; d < dim; ++d) product *= (corner[I] ^ corner[J]) >> d & 1 ? 1.0 / 6.0 : 1.0 / 3.0;
   return product - mean;
+}
+
+/* By how much pressures that vary inside a cell are held at point p, 1/Pa. */
+KERNEL PetscReal point_softness(const WeakFormInput *in, const Material *material, PetscInt p)
+{
+  PetscReal tau[6];
+  if (!material->flow) return in->alpha / material->elastic.shear;
+  point_tau(in->points, p, tau);
+  return in->alpha * pressure_softness(material, point_real(in->points, POINT_STATE, p), tau);
 }
 
 /* What pressures bear at point p, per mass, m/s2. */

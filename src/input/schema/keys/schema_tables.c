@@ -259,8 +259,9 @@ static const SchemaTable stabilisation = {
 
 static const SchemaEntry mixed_entries[] = {
   KEY("stabilisation", NUMBER, NULL,
-      "alpha: pressures that vary inside a cell are held by alpha / shear modulus; 0: off", .fallback = "2",
-      AT_LEAST(0), AT(MixedSpec, stabilisation)),
+      "alpha: pressures that vary inside a cell are held by alpha / shear modulus, in what flows through the cells of "
+      "mpm without a change of volume by up to 16 times that; 0: off",
+      .fallback = "2", AT_LEAST(0), AT(MixedSpec, stabilisation)),
   {.key = NULL},
 };
 static const SchemaTable mixed = {

@@ -28,15 +28,27 @@ static PetscBool begin_state(const Law *was, const PetscReal *before, const Mate
   return keep_history(was, before, is->law, state);
 }
 
+/* By how much more pressures are held that vary inside a cell. What is held at one point of a cell need not be a
+ * multiple of p there, and its sums stay in balance where all of it goes with 1 / G: that is so wherever both flow, or
+ * neither. */
+static PetscReal how_much_softer(const Points *points, PetscInt p, const Material *was, const Material *is,
+                                 const PetscReal tau[6], const PetscReal *state)
+{
+  if (!was->flow == !is->flow) return was->elastic.shear / is->elastic.shear;
+  return pressure_softness(is, state, tau) / pressure_softness(was, point_real(points, POINT_STATE, p), tau);
+}
+
 /* Volumetric strain of the state before that its pressure does not explain: what the stabilisation of the mixed
- * formulation holds there, a multiple of p / G. It stays with p. */
-static PetscReal held_strain(const Points *points, PetscInt p, const Material *was, const Material *is)
+ * formulation holds there, a multiple of p / G, or more in what flows. It stays with p. state: as it will be. */
+static PetscReal held_strain(const Points *points, PetscInt p, const Material *was, const Material *is,
+                             const PetscReal tau[6], const PetscReal *state)
 {
   PetscReal J;
   if (!was->mixed) return 0;
   was->law->volume(1, point_real(points, POINT_STATE, p), &J);
   const PetscReal strain = was->volume == VOLUME_LINEAR ? J - 1 : PetscLogReal(J);
-  return (strain - points->real[POINT_PRESSURE][p] * was->compliance) * was->elastic.shear / is->elastic.shear;
+  const PetscReal softer = how_much_softer(points, p, was, is, tau, state);
+  return (strain - points->real[POINT_PRESSURE][p] * was->compliance) * softer;
 }
 
 /* Pressure and shape apart: *pressure and the state's volume J fit each other, and the mean of tau stays. */
@@ -69,7 +81,7 @@ static PetscBool bear_point(Points *points, PetscInt p, const Material *was, con
 {
   PetscBool bears;
   if (is->mixed) {
-    const PetscReal held = held_strain(points, p, was, is);
+    const PetscReal held = held_strain(points, p, was, is, tau, state);
     bears = (is->volume == VOLUME_COUPLED ? bear_coupled : bear_apart)(is, held, tau, state,
                                                                        points->real[POINT_PRESSURE] + p);
   } else bears = is->law->bear(is->parameters, tau, state);
