@@ -63,7 +63,7 @@ LANES_INLINE void fall_back(const PetscReal *q, const Lanes *p, const Lanes *R, 
   *left = (Meridian){*p, one, one, none, none, one};
   if (!lanes_any(plastic)) return;
   flow(q, &P, R, &f);
-  const Meridian flows = {*p, f.left / (*R + 1e-300), one, none, -f.by_P, f.by_R}, apart = {none};
+  const Meridian flows = {*p, f.left / (*R + 1e-300), one, none, -f.by_P, f.by_R}, apart = {.p = none};
   meridian_take(&shears, &flows, left);
   meridian_take(&opens, &apart, left);
 }
