@@ -348,7 +348,34 @@ static PetscErrorCode Close(Run *r, PetscReal *measures)
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode RunModel(Run *r, const RunOptions *options, Diag *diag, PetscReal *measures, RunResult *result)
+/* The messages that wait, as they are printed; the caller frees them. */
+static PetscErrorCode Said(const Diag *diag, char **said)
+{
+  size_t length;
+
+  PetscFunctionBeginUser;
+  FILE *out = open_memstream(said, &length);
+  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for messages");
+  PetscCall(DiagPrint(diag, out));
+  fclose(out);
+  PetscFunctionReturn(0);
+}
+
+/* Whoever opens the folder later reads what its run has warned of. */
+static PetscErrorCode KeepMessages(Run *r, const Diag *diag)
+{
+  char *said;
+
+  PetscFunctionBeginUser;
+  PetscCall(Said(diag, &said));
+  run_dir_keep(r->dir, said);
+  free(said);
+  PetscFunctionReturn(0);
+}
+
+/* told: what was said before there was a folder. */
+static PetscErrorCode RunModel(Run *r, const RunOptions *options, const char *told, Diag *diag, PetscReal *measures,
+                               RunResult *result)
 {
   PetscBool complete = PETSC_FALSE;
 
@@ -365,11 +392,13 @@ static PetscErrorCode RunModel(Run *r, const RunOptions *options, Diag *diag, Pe
     diag_error(diag, NULL, "%s", r->summary.reason);
     if (!options->resume) PetscCall(RunDirDiscard(&r->dir));
   } else {
+    run_dir_keep(r->dir, told);
     PetscCall(RunStages(r, diag));
     PetscCall(Close(r, measures));
     PetscCall(LossesWarn(r->model, r->values, diag));
     if (!r->failed) PetscCall(ModelWarnLoose(r->model, diag));
     PetscCall(ModelUnusedOptions(r->model, diag));
+    PetscCall(KeepMessages(r, diag));
     *result = r->failed ? RUN_GAVE_UP : RUN_DONE;
     if (options->summary) *options->summary = r->summary;
   }
@@ -417,6 +446,7 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
              .checkpoint_step = -1,
              .watcher = options->watcher,
              .watcher_context = options->watcher_context};
+  char *told = NULL;
 
   PetscFunctionBeginUser;
   *result = RUN_BAD_INPUT;
@@ -424,11 +454,15 @@ PetscErrorCode RunCase(MPI_Comm comm, const Case *c, const RunOptions *options, 
   if (!run.model) PetscFunctionReturn(0);
   PetscCall(UntilCreate(first, &run.until));
   PetscCall(RunMeasuresBegin(&run));
-  if (options->warnings) PetscCall(DiagFlush(diag, options->warnings));
+  if (options->warnings) {
+    PetscCall(Said(diag, &told));
+    PetscCall(DiagFlush(diag, options->warnings));
+  }
   signals_watch();
   run.model->asked = signals_came;
-  const PetscErrorCode code = RunModel(&run, options, diag, measures, result);
+  const PetscErrorCode code = RunModel(&run, options, told, diag, measures, result);
   signals_forget();
+  free(told);
   PetscCall(code);
   PetscCall(StrengthRunDestroy(&run.strength));
   PetscCall(LimitRunDestroy(&run.limit));

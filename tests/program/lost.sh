@@ -171,4 +171,25 @@ for times in last all; do
   says out.txt "picture = leaves/pictures/state" "picture = leaves/pictures/history_p.png"
 done
 
+# What contact in long steps of statics leaves out of the account is told, after stages too, and stays in the folder
+cat >gap.yaml <<'END'
+kinematics: plane-strain
+method: fem
+analysis: {type: static, end: 1, steps: 2}
+grid: {box: {min: [0, 0], max: [2, 1]}, size: 0.25}
+bodies: [{name: block, shape: {box: {min: [0, 0], max: [2, 1]}}, points_per_cell: 4, material: m}]
+materials: {m: {law: neo-hookean, density: 1000, young: 1e7, poisson: 0}}
+walls: [{name: gate, shape: {half-space: {point: [2.1, 0], normal: [-1, 0]}}, motion: [{displacement: {x: -0.101}}]}]
+boundary: [{on: {x: 0}, fix: [x]}, {on: {y: 0}, fix: [y]}]
+output: {every: end}
+END
+for row in "fem alone" "fem staged" "mpm staged"; do
+  set -- $row
+  stages='stages=[{name: only}]'
+  [ $2 = staged ] || stages=title=alone
+  expect "a closed gap, $row" 0 "$talus" run gap.yaml --out gap --force --quiet --set method=$1 --set "$stages" --set 'grid.box={min: [0, 0], max: [2.5, 1]}'
+  says err.txt "took 98 % of the energy that came in" "in which contact opens, closes or begins to slide"
+  grep -q "warning: the transfer .* took 98 %" gap/log.txt || fail "$name: log.txt does not have it"
+done
+
 finish

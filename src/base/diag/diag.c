@@ -252,7 +252,7 @@ static void print_more(PetscInt n, const char *what, FILE *out)
   if (n > 0) fprintf(out, "and %" PetscInt_FMT " more %s%s\n", n, what, n > 1 ? "s" : "");
 }
 
-PetscErrorCode DiagFlush(Diag *diag, FILE *out)
+PetscErrorCode DiagPrint(const Diag *diag, FILE *out)
 {
   SortKey *keys;
 
@@ -270,6 +270,13 @@ PetscErrorCode DiagFlush(Diag *diag, FILE *out)
     fflush(out);
     PetscCall(PetscFree(keys));
   }
+  PetscFunctionReturn(0);
+}
+
+PetscErrorCode DiagFlush(Diag *diag, FILE *out)
+{
+  PetscFunctionBeginUser;
+  PetscCall(DiagPrint(diag, out));
   forget(diag);
   PetscFunctionReturn(0);
 }

@@ -50,9 +50,10 @@ PetscInt diag_warnings(const Diag *diag);
 
 /* Collective: number of errors over all ranks; messages of other ranks travel to rank 0. */
 PetscErrorCode DiagReduce(MPI_Comm comm, Diag *diag, PetscInt *errors);
-/* Print all messages in the order of their lines and forget them:
- * `case.yaml:12:7: error: ...`, the line, a caret, the hint; last how many more there are. The
- * first rank of the newest DiagReduce prints (before any: the first of all), others forget. */
+/* Print all messages in the order of their lines: `case.yaml:12:7: error: ...`, the line, a caret, the hint; last how
+ * many more there are. The first rank of the newest DiagReduce prints (before any: the first of all). */
+PetscErrorCode DiagPrint(const Diag *diag, FILE *out);
+/* The same, and all ranks forget them. */
 PetscErrorCode DiagFlush(Diag *diag, FILE *out);
 
 /* The word of a NULL-terminated list nearest to `word` (Damerau-Levenshtein); if none is near, one that begins as it

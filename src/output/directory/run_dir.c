@@ -253,6 +253,13 @@ PetscErrorCode RunDirLog(RunDir *dir, const char *format, ...)
   PetscFunctionReturn(0);
 }
 
+void run_dir_keep(RunDir *dir, const char *text)
+{
+  if (dir->rank > 0 || !dir->log || !text) return;
+  fputs(text, dir->log);
+  run_dir_note_log(dir);
+}
+
 void run_dir_note_log(RunDir *dir)
 {
   if (dir->log && !dir->log_error && ferror(dir->log)) dir->log_error = errno ? errno : EIO;

@@ -40,6 +40,9 @@ const char *run_dir_path(const RunDir *dir);
 /* A line for the log and the terminal (rank 0): plain `key = value` text. */
 PetscErrorCode RunDirLog(RunDir *dir, const char *format, ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 
+/* For the log alone (rank 0): what was printed elsewhere, lines as they are. */
+void run_dir_keep(RunDir *dir, const char *text);
+
 /* Collective. Did all lines get into the log? Errors as for the history. */
 PetscErrorCode RunDirCheckLog(RunDir *dir);
 

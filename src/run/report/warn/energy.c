@@ -121,9 +121,8 @@ static PetscBool hint_of_scheme(const Model *m, PetscReal share, Diag *diag)
         ? "elastic bodies keep it with `analysis: {transfer: consistent}` (docs/theory.md, Energy)"
         : "elastic bodies keep it with `analysis: {transfer: consistent, scheme: midpoint}` (docs/theory.md, Energy)");
   else if (share < 0)
-    diag_hint(diag,
-              "steps much shorter than a wave takes through a cell make it: longer ones, or `analysis: {transfer: "
-              "consistent}` (docs/guide/limits.md)");
+    diag_hint(diag, "steps much shorter than a wave takes through a cell make it: longer ones%s (docs/guide/limits.md)",
+              m->formulation->cells ? "" : ", or `analysis: {transfer: consistent}`");
   return (PetscBool)(share < 0 || !materials_yield(m->c->n_materials, m->materials));
 }
 
@@ -136,6 +135,15 @@ static const char *contact_takes(const Model *m, PetscReal share)
   if (m->c->analysis.type == ANALYSIS_EXPLICIT)
     return "springs of what touches store a part of it, and their dashpots take what swings until it rests; "
            "smaller cells lessen it; measure {energy: transfer} shows when (docs/theory.md, section 34)";
+  if (m->method->restores_grid)
+    return "steps of statics in which contact opens, closes or begins to slide count its work by the mean of their "
+           "ends: "
+           "shorter ones lessen it, smaller cells what is lost beside; measure {energy: transfer} shows when "
+           "(docs/theory.md, Energy)";
+  if (m->c->staged && case_is_static(&m->c->analysis))
+    return "steps in which contact opens, closes or begins to slide, or in which a stage brings or takes something at "
+           "once, count its work by the mean of their ends: shorter ones lessen it; measure {energy: transfer} shows "
+           "when (docs/theory.md, Energy)";
   if (m->c->n_interfaces > 0 && m->scheme->inertia)
     return "steps in which contact opens, closes or begins to slide count its work by the mean of their ends, and "
            "round faces of bodies drive what slides along them by v dt / (2 R) of its force: shorter ones lessen it; "
@@ -147,7 +155,8 @@ static const char *contact_takes(const Model *m, PetscReal share)
 /* PETSC_FALSE: none. */
 static PetscBool hint_of_contact(const Model *m, PetscReal share, Diag *diag)
 {
-  if (!m->contact || (m->c->analysis.type != ANALYSIS_EXPLICIT && m->method->restores_grid)) return PETSC_FALSE;
+  if (!m->contact || (m->scheme->inertia && m->c->analysis.type != ANALYSIS_EXPLICIT && m->method->restores_grid))
+    return PETSC_FALSE;
   diag_hint(diag, "%s", contact_takes(m, share));
   return PETSC_TRUE;
 }
@@ -170,7 +179,8 @@ static void hint_of_grid(const Model *m, Diag *diag)
 static void warn_of_transfer(const Model *m, Diag *diag)
 {
   const PetscReal taken = taken_by_transfer(m), share = energy_share(m, taken);
-  if (!m->method->restores_grid && m->c->staged && case_is_static(&m->c->analysis)) return; /* of what went away */
+  if (!m->contact && !m->method->restores_grid && m->c->staged && case_is_static(&m->c->analysis))
+    return; /* what went */
   warn_of_made(m, taken, diag);
   if (PetscAbsReal(share) <= TRANSFER_ALLOWED) return;
   diag_warning(
