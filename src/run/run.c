@@ -324,30 +324,6 @@ static PetscErrorCode RunStages(Run *r, Diag *diag)
   }
 }
 
-/* A run that ended and had a checkpoint, or may go on to a later end, leaves one of its end. */
-static PetscErrorCode Close(Run *r, PetscReal *measures)
-{
-  PetscReal seconds;
-
-  PetscFunctionBeginUser;
-  if (!r->failed && (r->n_written || may_go_on(r))) PetscCall(CheckpointSave(r));
-  PetscCall(RunWriteLastRow(r));
-  PetscCall(RunWriteState(r));
-  PetscCall(MeasureEnd(r));
-  seconds = r->before + (MPI_Wtime() - r->start);
-  if (measures) run_give_columns(r, measures);
-  r->summary.steps = r->model->step;
-  r->summary.halvings = r->model->cuts;
-  r->summary.iterations = r->model->total_iterations;
-  r->summary.seconds = seconds;
-  until_reason(&r->until, r->c, r->summary.ended);
-  r->summary.resumable = r->failed && r->checkpoint_step >= 0;
-  r->summary.checkpoint_step = r->checkpoint_step;
-  PetscCall(RunWritten(r, SummaryEnd(r->model, r->dir, &r->summary, r->values)));
-  PetscCall(RunWritten(r, RunDirCheckLog(r->dir)));
-  PetscFunctionReturn(0);
-}
-
 /* The messages that wait, as they are printed; the caller frees them. */
 static PetscErrorCode Said(const Diag *diag, char **said)
 {
@@ -361,15 +337,43 @@ static PetscErrorCode Said(const Diag *diag, char **said)
   PetscFunctionReturn(0);
 }
 
-/* Whoever opens the folder later reads what its run has warned of. */
-static PetscErrorCode KeepMessages(Run *r, const Diag *diag)
+/* Whoever opens the folder later reads what its run has warned of, too. */
+static PetscErrorCode Warn(Run *r, Diag *diag)
 {
   char *said;
 
   PetscFunctionBeginUser;
+  PetscCall(LossesWarn(r->model, r->values, diag));
+  if (!r->failed) PetscCall(ModelWarnLoose(r->model, diag));
+  PetscCall(ModelUnusedOptions(r->model, diag));
   PetscCall(Said(diag, &said));
   run_dir_keep(r->dir, said);
   free(said);
+  PetscFunctionReturn(0);
+}
+
+/* A run that ended and had a checkpoint, or may go on to a later end, leaves one of its end. */
+static PetscErrorCode Close(Run *r, Diag *diag, PetscReal *measures)
+{
+  PetscReal seconds;
+
+  PetscFunctionBeginUser;
+  if (!r->failed && (r->n_written || may_go_on(r))) PetscCall(CheckpointSave(r));
+  PetscCall(RunWriteLastRow(r));
+  PetscCall(RunWriteState(r));
+  PetscCall(MeasureEnd(r));
+  PetscCall(Warn(r, diag));
+  seconds = r->before + (MPI_Wtime() - r->start);
+  if (measures) run_give_columns(r, measures);
+  r->summary.steps = r->model->step;
+  r->summary.halvings = r->model->cuts;
+  r->summary.iterations = r->model->total_iterations;
+  r->summary.seconds = seconds;
+  until_reason(&r->until, r->c, r->summary.ended);
+  r->summary.resumable = r->failed && r->checkpoint_step >= 0;
+  r->summary.checkpoint_step = r->checkpoint_step;
+  PetscCall(RunWritten(r, SummaryEnd(r->model, r->dir, &r->summary, r->values)));
+  PetscCall(RunWritten(r, RunDirCheckLog(r->dir)));
   PetscFunctionReturn(0);
 }
 
@@ -394,11 +398,7 @@ static PetscErrorCode RunModel(Run *r, const RunOptions *options, const char *to
   } else {
     run_dir_keep(r->dir, told);
     PetscCall(RunStages(r, diag));
-    PetscCall(Close(r, measures));
-    PetscCall(LossesWarn(r->model, r->values, diag));
-    if (!r->failed) PetscCall(ModelWarnLoose(r->model, diag));
-    PetscCall(ModelUnusedOptions(r->model, diag));
-    PetscCall(KeepMessages(r, diag));
+    PetscCall(Close(r, diag, measures));
     *result = r->failed ? RUN_GAVE_UP : RUN_DONE;
     if (options->summary) *options->summary = r->summary;
   }

@@ -404,8 +404,8 @@ static void test_carries(void **state)
   CALL(ModelDestroy(&m));
 }
 
-/* A couple turns a plate that is bonded to the end of a bar, and turns it back, in statics: what is bonded goes round with
- * it, and nothing stays of it. By theta across the lever it was pinched by theta^2 / 2 in each step. */
+/* A couple turns a plate that is bonded to the end of a bar, and turns it back, in statics: what is bonded goes round
+ * with it, and nothing stays of it. By theta across the lever it was pinched by theta^2 / 2 in each step. */
 static void test_grips(void **state)
 {
   static const Hit ways[] = {{"fem", "cell", NULL, CELL_QUADRILATERAL, 0, PETSC_FALSE, 0, 0},

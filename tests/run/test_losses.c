@@ -40,7 +40,7 @@ static void test_crowd(void **state)
   (void)state;
   assert_int_equal(warnings(1), 0);
   assert_int_equal(warnings(1.04), 0); /* 4 % of the volume are too much */
-  assert_int_equal(warnings(1.1), 1); /* 9 % */
+  assert_int_equal(warnings(1.1), 1);  /* 9 % */
 }
 
 /* What a strain that is no number is said to be, of a body that is there and of a place where nothing is. */

@@ -129,8 +129,8 @@ void contact_balance(const Contact *s, const ContactPoint *c, PetscReal f[3])
 /* A force that rises by more than that in a step has begun in it. */
 #define AT_ONCE 1.2
 
-/* The mean of a step is the force half a step before its end, where accelerations stand: by which it had risen since the
- * last mean, half of that is added. What remembered the mean alone drove whatever swings on a wall (docs/theory.md,
+/* The mean of a step is the force half a step before its end, where accelerations stand: half of what it has risen by
+ * since the last mean is added. What remembered the mean alone drove whatever swings on a wall (docs/theory.md,
  * section 93). */
 PetscReal contact_stays(const Contact *s, const ContactPoint *c)
 {
