@@ -2,9 +2,7 @@
  * (p, R) and keeps the direction of the shear stress s.
  *
  *   p = tr tau / 3,  R = sqrt(s : s / 2) */
-#ifndef TALUS_MATERIAL_MERIDIAN_H
-#define TALUS_MATERIAL_MERIDIAN_H
-
+#pragma once
 #include "material/algebra/hencky.h"
 
 /* Before the return; d: deviator of the principal strains. */
@@ -68,5 +66,3 @@ static inline void meridian_initial(PetscReal K, PetscReal G, const PetscReal si
   for (int a = 0; a < 3; ++a) norm2 += 0.5 * PetscSqr(tau[a] - *p);
   *R = sqrt(norm2);
 }
-
-#endif

@@ -136,10 +136,9 @@ static const char *contact_takes(const Model *m, PetscReal share)
     return "springs of what touches store a part of it, and their dashpots take what swings until it rests; "
            "smaller cells lessen it; measure {energy: transfer} shows when (docs/theory.md, section 34)";
   if (m->method->restores_grid)
-    return "steps of statics in which contact opens, closes or begins to slide count its work by the mean of their "
-           "ends: "
-           "shorter ones lessen it, smaller cells what is lost beside; measure {energy: transfer} shows when "
-           "(docs/theory.md, Energy)";
+    return "steps in which contact opens, closes or begins to slide count its work by the mean of their ends: shorter "
+           "ones lessen it, smaller cells what is lost beside; measure {energy: transfer} shows when (docs/theory.md, "
+           "Energy)";
   if (m->c->staged && case_is_static(&m->c->analysis))
     return "steps in which contact opens, closes or begins to slide, or in which a stage brings or takes something at "
            "once, count its work by the mean of their ends: shorter ones lessen it; measure {energy: transfer} shows "
@@ -152,11 +151,11 @@ static const char *contact_takes(const Model *m, PetscReal share)
          "ones lessen it; measure {energy: transfer} shows when (docs/theory.md, Energy)";
 }
 
-/* PETSC_FALSE: none. */
+/* PETSC_FALSE: none. What mpm loses in dynamics, or at lines of the grid, is another thing. */
 static PetscBool hint_of_contact(const Model *m, PetscReal share, Diag *diag)
 {
-  if (!m->contact || (m->scheme->inertia && m->c->analysis.type != ANALYSIS_EXPLICIT && m->method->restores_grid))
-    return PETSC_FALSE;
+  const PetscBool by_points = (PetscBool)(m->method->restores_grid && m->c->analysis.type != ANALYSIS_EXPLICIT);
+  if (!m->contact || (by_points && (m->scheme->inertia || loses_at_lines(m)))) return PETSC_FALSE;
   diag_hint(diag, "%s", contact_takes(m, share));
   return PETSC_TRUE;
 }
@@ -179,8 +178,8 @@ static void hint_of_grid(const Model *m, Diag *diag)
 static void warn_of_transfer(const Model *m, Diag *diag)
 {
   const PetscReal taken = taken_by_transfer(m), share = energy_share(m, taken);
-  if (!m->contact && !m->method->restores_grid && m->c->staged && case_is_static(&m->c->analysis))
-    return; /* what went */
+  /* what a stage took away, unless contact has a part in it */
+  if (!m->contact && !m->method->restores_grid && m->c->staged && case_is_static(&m->c->analysis)) return;
   warn_of_made(m, taken, diag);
   if (PetscAbsReal(share) <= TRANSFER_ALLOWED) return;
   diag_warning(
