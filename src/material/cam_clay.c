@@ -308,6 +308,8 @@ static const LawField fields[] = {
   {.name = NULL},
 };
 
+static void scale(PetscInt n, const PetscReal *factor, PetscReal *state) { scale_b(n, 6 + SCALARS, factor, state); }
+
 const Law law_modified_cam_clay = {
   .name = "modified-cam-clay",
   .help =
@@ -326,6 +328,7 @@ const Law law_modified_cam_clay = {
   .energy = energy,
   .initial_stress = initial_stress,
   .bear = bear,
+  .scale = scale,
   .prepare = prepare,
   .check = check,
 };

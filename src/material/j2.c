@@ -199,6 +199,11 @@ static void volume(PetscInt n, const PetscReal *state, PetscReal *J)
   for (PetscInt p = 0; p < n; ++p) J[p] = state[p * N_STATE + 6];
 }
 
+static void scale(PetscInt n, const PetscReal *factor, PetscReal *state)
+{
+  for (PetscInt p = 0; p < n; ++p) state[p * N_STATE + 6] *= factor[p] * factor[p] * factor[p];
+}
+
 static const LawParameter parameters[] = {
   {"yield_stress", "Pa", "stress at which a tension test yields", 0, PETSC_MAX_REAL, .min_open = PETSC_TRUE,
    .fallback = NAN},
@@ -217,7 +222,7 @@ static const LawField fields[] = {
   {                                                                                                                 \
     .parameters = parameters, .fields = fields, .n_state = N_STATE, .yields = PETSC_TRUE, .update = update,         \
     .energy = energy, .initial_stress = initial_stress, .bear = bear, .volume = volume, .volume_law = split_volume, \
-    .reduce = reduce, .hardens = hardens, __VA_ARGS__                                                               \
+    .scale = scale, .reduce = reduce, .hardens = hardens, __VA_ARGS__                                               \
   }
 
 const Law law_j2 = J2(.name = "j2", .prepare = prepare_linear,

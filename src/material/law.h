@@ -127,8 +127,8 @@ typedef struct Law {
   /* Turn the user's constants into the packed parameters; complain through diag at `path`. */
   void (*prepare)(const Elasticity *elastic, const PetscReal *given, PetscReal *packed);
   /* What the mixed formulation needs; NULL: the law has no mixed form. Elastic volume ratio of n
-   * states; volumetric part; and, only where that may be VOLUME_COUPLED, states whose lengths are
-   * multiplied by factor (n). */
+   * states; volumetric part; and, only where that may be VOLUME_COUPLED, states whose elastic
+   * lengths are multiplied by factor (n), which stabilisation.room asks for, too. */
   void (*volume)(PetscInt n, const PetscReal *state, PetscReal *J);
   VolumeLaw (*volume_law)(const PetscReal *parameters);
   void (*scale)(PetscInt n, const PetscReal *factor, PetscReal *state);

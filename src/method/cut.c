@@ -29,7 +29,7 @@ static PetscErrorCode WholeVolumes(Discretisation *s)
   PetscFunctionReturn(0);
 }
 
-PetscErrorCode DiscretisationVolumes(Discretisation *s, PetscBool now, PetscReal *volume)
+PetscErrorCode DiscretisationVolumes(Discretisation *s, const PetscReal *ratio, PetscReal *volume)
 {
   const Support *w = s->support;
 
@@ -38,7 +38,7 @@ PetscErrorCode DiscretisationVolumes(Discretisation *s, PetscBool now, PetscReal
   PetscCall(PetscArrayzero(volume, s->grid->n_nodes));
   for (PetscInt g = 0; g < w->n_groups; ++g)
     for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
-      const PetscReal V = (now ? s->points->real[POINT_J][p] : 1) * s->points->real[POINT_VOLUME][p];
+      const PetscReal V = (ratio ? ratio[p] : 1) * s->points->real[POINT_VOLUME][p];
       for (PetscInt I = 0; I < support_nodes(w, g); ++I)
         volume[w->node[w->node_start[g] + I]] += support_N(w, g, p)[I] * V;
     }

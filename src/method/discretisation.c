@@ -32,6 +32,7 @@ PetscErrorCode DiscretisationDestroy(Discretisation **space)
   PetscCall(PetscFree(s->filled));
   PetscCall(PetscFree(s->volume));
   PetscCall(PetscFree(s->whole));
+  PetscCall(PetscFree(s->unroomed));
   PetscCall(PetscFree(s->rim));
   PetscCall(PetscFree(s->reached));
   PetscCall(ExtensionDestroy(&s->extension));

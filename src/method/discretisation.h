@@ -24,6 +24,7 @@ typedef struct Discretisation {
   unsigned char *filled;           /* n_cells: does the cell hold points? */
   PetscReal *volume;               /* n_cells, of grids that are restored: 0 where nobody has asked for it, m3 */
   PetscReal *whole;                /* n_nodes, of such a grid: the node's share of the cells, m3; NULL: not asked for */
+  PetscReal *unroomed;             /* points as they were before DiscretisationRoom; NULL: it was not called */
   struct Extension *extension;     /* which nodes follow others, of points with domains; see extend/extend.h */
   PetscBool alone;                 /* does no node follow, while accelerations are taken over? */
   unsigned char *rim;              /* BasisInput.rim of the last support, of a basis that asks; else NULL */
@@ -55,12 +56,18 @@ PetscErrorCode DiscretisationPressure(Discretisation *space);
 /* Of a basis whose points are groups of their own in a grid: soft and pressure_tie of points with a node that is hardly
  * reached and follows no others, or, where none can, is less than half full; after DiscretisationExtend. */
 PetscErrorCode DiscretisationCuts(Discretisation *space);
-/* Of each node, on all copies: the volume of the material around it (as it is now, else as it was at the start;
- * n_nodes), and in `whole` that of its share of the cells. */
-PetscErrorCode DiscretisationVolumes(Discretisation *space, PetscBool now, PetscReal *volume);
+/* Of each node, on all copies: the volume of the material around it (n_nodes), points having `ratio` of theirs at the
+ * start (NULL: 1), and in `whole` that of its share of the cells. */
+PetscErrorCode DiscretisationVolumes(Discretisation *space, const PetscReal *ratio, PetscReal *volume);
+/* Of each point, in grids of cells: the volume that points around ask for, `ratio` of that at the start (NULL: 1), over
+ * the room that they have; collective. */
+PetscErrorCode DiscretisationDensities(Discretisation *space, const PetscReal *ratio, PetscReal *density);
 /* Of a method that restores its grid: no point remembers more of an opening, and has a larger J, than its surroundings
- * have room for (docs/theory.md, "The room that points have"); between initialise and the solve. */
-PetscErrorCode DiscretisationRoom(Discretisation *space);
+ * have room for, and what flows closer together than its volume allows is pressed (docs/theory.md, "The room that points
+ * have"); between initialise and the solve. made: by that, on this rank, J. */
+PetscErrorCode DiscretisationRoom(Discretisation *space, PetscReal *made);
+/* A step that is given up leaves its points as they were before they heard of their room, if they did. */
+void discretisation_room_back(Discretisation *space);
 /* Nodes that keep their history take the velocity of their body where they stand; m and touched
  * must be known. */
 PetscErrorCode DiscretisationBodyVelocity(Discretisation *space);

@@ -1,7 +1,16 @@
 /* How much room points have: the density with which they stand on the grid, beside what they remember of
- * openings (docs/theory.md, "The room that points have"). */
+ * openings and the volume that their laws know (docs/theory.md, "The room that points have"). */
 #include <math.h>
+#include <string.h>
 #include "method/discretisation.h"
+
+/* Above its room, how much more points may seem to ask for: as uneven are four of a cell in what has flowed, after the
+ * two means below. */
+#define UNEVEN 0.04
+
+/* Of what is too much, the share that goes with as much plastic strain as one, and the most that goes in a step. */
+#define PARTING 4
+#define AT_ONCE 0.5
 
 /* What a field of the nodes is at each point. */
 static void to_points(const Discretisation *s, const PetscReal *nodal, PetscReal *at)
@@ -15,35 +24,38 @@ static void to_points(const Discretisation *s, const PetscReal *nodal, PetscReal
     }
 }
 
-/* The mean, by volume, of what the points around each node have. */
-static PetscErrorCode ToNodes(const Discretisation *s, const PetscReal *at, const PetscReal *volume, PetscReal *nodal)
+/* The mean, by the volumes that points ask for, of what those around each node have. */
+static PetscErrorCode ToNodes(const Discretisation *s, const PetscReal *at, const PetscReal *ratio,
+                              const PetscReal *volume, PetscReal *nodal)
 {
   const Support *w = s->support;
 
   PetscFunctionBeginUser;
   PetscCall(PetscArrayzero(nodal, s->grid->n_nodes));
   for (PetscInt g = 0; g < w->n_groups; ++g)
-    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p)
+    for (PetscInt p = w->point_start[g]; p < w->point_start[g + 1]; ++p) {
+      const PetscReal V = (ratio ? ratio[p] : 1) * s->points->real[POINT_VOLUME][p];
       for (PetscInt I = 0; I < support_nodes(w, g); ++I)
-        nodal[w->node[w->node_start[g] + I]] += support_N(w, g, p)[I] * s->points->real[POINT_VOLUME][p] * at[p];
+        nodal[w->node[w->node_start[g] + I]] += support_N(w, g, p)[I] * V * at[p];
+    }
   PetscCall(GridSumToOwners(s->grid, 1, nodal));
   PetscCall(GridToGhosts(s->grid, 1, nodal));
   for (PetscInt i = 0; i < s->grid->n_nodes; ++i) nodal[i] = volume[i] > 0 ? nodal[i] / volume[i] : 0;
   PetscFunctionReturn(0);
 }
 
-/* Volume at the start over the room of now, at each point. Averaged once more over the points around, since four of
- * them in a cell are spread unevenly as soon as they have moved. */
-static PetscErrorCode Densities(Discretisation *s, PetscReal *density)
+/* Averaged once more over the points around, since four of them in a cell are spread unevenly as soon as they have
+ * moved. */
+PetscErrorCode DiscretisationDensities(Discretisation *s, const PetscReal *ratio, PetscReal *density)
 {
   PetscReal *volume, *filled;
 
   PetscFunctionBeginUser;
   PetscCall(PetscMalloc2(s->grid->n_nodes, &volume, s->grid->n_nodes, &filled));
-  PetscCall(DiscretisationVolumes(s, PETSC_FALSE, volume));
+  PetscCall(DiscretisationVolumes(s, ratio, volume));
   for (PetscInt i = 0; i < s->grid->n_nodes; ++i) filled[i] = s->whole[i] > 0 ? volume[i] / s->whole[i] : 0;
   to_points(s, filled, density);
-  PetscCall(ToNodes(s, density, volume, filled));
+  PetscCall(ToNodes(s, density, ratio, volume, filled));
   to_points(s, filled, density);
   PetscCall(PetscFree2(volume, filled));
   PetscFunctionReturn(0);
@@ -58,15 +70,13 @@ static void shrink(Points *points, PetscInt p, PetscReal J)
   points->real[POINT_J][p] = J;
 }
 
-PetscErrorCode DiscretisationRoom(Discretisation *s)
+/* Nothing is farther open than its surroundings have room for. */
+static PetscErrorCode Close(Discretisation *s, PetscReal *density)
 {
   Points *points = s->points;
-  PetscReal *density;
 
   PetscFunctionBeginUser;
-  if (!s->c->stabilisation.room) PetscFunctionReturn(0);
-  PetscCall(PetscMalloc1(points->n, &density));
-  PetscCall(Densities(s, density));
+  PetscCall(DiscretisationDensities(s, NULL, density));
   for (PetscInt p = 0; p < points->n; ++p) {
     const Material *material = &s->materials[points->material[p]];
     const PetscReal most = PetscMax(0, -log(density[p]));
@@ -74,6 +84,89 @@ PetscErrorCode DiscretisationRoom(Discretisation *s)
     material->law->room(material->parameters, most, point_real(points, POINT_STATE, p));
     if (points->real[POINT_J][p] > exp(most)) shrink(points, p, exp(most));
   }
+  PetscFunctionReturn(0);
+}
+
+static PetscReal stored(const Material *material, const PetscReal *state)
+{
+  return material->law->energy ? material->law->energy(material->parameters, state) : 0;
+}
+
+/* The elastic part of a state, and F with it, is pressed together by e^-much: to be as before it has to part. That is
+ * work on it, J. */
+static PetscReal press(Discretisation *s, PetscInt p, PetscReal much)
+{
+  const Material *material = &s->materials[s->points->material[p]];
+  const PetscReal shorter = exp(-much / 3);
+  PetscReal *state = point_real(s->points, POINT_STATE, p);
+  const PetscReal before = stored(material, state);
+  material->law->scale(1, &shorter, state);
+  shrink(s->points, p, s->points->real[POINT_J][p] * exp(-much));
+  const PetscReal work = s->points->real[POINT_VOLUME][p] * (stored(material, state) - before);
+  s->points->real[POINT_WORK][p] += work;
+  return work;
+}
+
+/* What flows, and asks for more than its room, is pressed as if it had been brought together by that. What has opened
+ * asks for no more than before: laws forget what has closed again, and dilatancy is left alone, as far as it has room. */
+static PetscErrorCode Part(Discretisation *s, PetscReal *density, PetscReal *made)
+{
+  Points *points = s->points;
+  PetscReal *ratio;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(points->n, &ratio));
+  for (PetscInt p = 0; p < points->n; ++p) ratio[p] = PetscMin(1, points->real[POINT_J][p]);
+  PetscCall(DiscretisationDensities(s, ratio, density));
+  for (PetscInt p = 0; p < points->n; ++p) {
+    const Law *law = s->materials[points->material[p]].law;
+    const PetscReal flowed = PARTING * *point_real(points, POINT_FLOW, p), excess = density[p] - 1 - UNEVEN;
+    if (law->yields && law->scale && flowed > 0 && excess > 0) *made += press(s, p, PetscMin(AT_ONCE, flowed) * excess);
+  }
+  PetscCall(PetscFree(ratio));
+  PetscFunctionReturn(0);
+}
+
+/* What the room changes. */
+static const int told[] = {POINT_F, POINT_J, POINT_STATE, POINT_WORK};
+
+static void copy(Points *points, PetscReal *kept, PetscBool back)
+{
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(told); ++k) {
+    const size_t n = (size_t)(points->components[told[k]] * points->n);
+    PetscReal *field = points->real[told[k]];
+    memcpy(back ? field : kept, back ? kept : field, n * sizeof *kept);
+    kept += n;
+  }
+}
+
+static PetscErrorCode Keep(Discretisation *s)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBeginUser;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(told); ++k) n += s->points->components[told[k]];
+  PetscCall(PetscFree(s->unroomed));
+  PetscCall(PetscMalloc1(n * s->points->n + 1, &s->unroomed));
+  copy(s->points, s->unroomed, PETSC_FALSE);
+  PetscFunctionReturn(0);
+}
+
+void discretisation_room_back(Discretisation *s)
+{
+  if (s->unroomed) copy(s->points, s->unroomed, PETSC_TRUE);
+}
+
+PetscErrorCode DiscretisationRoom(Discretisation *s, PetscReal *made)
+{
+  PetscReal *density;
+
+  PetscFunctionBeginUser;
+  *made = 0;
+  PetscCall(Keep(s));
+  PetscCall(PetscMalloc1(s->points->n, &density));
+  PetscCall(Close(s, density));
+  PetscCall(Part(s, density, made));
   PetscCall(PetscFree(density));
   PetscFunctionReturn(0);
 }

@@ -102,7 +102,7 @@ static PetscErrorCode CreatePoints(Model *m, Outline *outline, Diag *diag)
   m->points->components[POINT_CONTACT] =
     (c->n_walls + c->n_interfaces) * contact_kept_partner(m->dim, contact_sides(c));
   if (m->grid->n_fields > 1 || (m->method->clouds && c->n_interfaces)) m->points->components[POINT_FIELD] = 1;
-  m->points->components[POINT_FLOW] = case_writes(c, "plastic_increment") || raised_hardens(m);
+  m->points->components[POINT_FLOW] = c->stabilisation.room || case_writes(c, "plastic_increment") || raised_hardens(m);
   m->points->components[POINT_MECHANISM] = case_writes(c, "mechanism") ? m->dim : 0;
   for (PetscInt k = 0; k < c->n_measures; ++k)
     m->points->components[POINT_CARRIED] += measure_find(c->measures[k].kind)->events != NULL;

@@ -18,7 +18,7 @@ typedef struct {
   PetscReal damped, transfer;
   PetscReal friction;  /* taken by sliding along walls, since the start, J */
   PetscReal held;      /* of transfer: by what holds nodes that points hardly reach, since the start, J */
-  PetscReal numerical; /* taken by the damping of the time scheme, since the start, J */
+  PetscReal numerical; /* taken by the damping of the time scheme, less what room makes, since the start, J */
   /* gone with points that left the grid, and in holding others at its boundary, since the start,
    * J */
   PetscReal outside;

@@ -50,6 +50,9 @@ PetscErrorCode ModelEnable(Model *model);
 PetscErrorCode InitialStress(Model *model, const Outline *outline, Diag *diag);
 /* Collective. Tell points whose law is nonlocal the mean of what is around them (nonlocal.c). */
 PetscErrorCode NonlocalStep(Model *model);
+/* Collective, after ModelInitialise. Points hear of the room that they have; what that makes, J, is numerical
+ * (step/prepare.c). */
+PetscErrorCode ModelRoom(Model *model, PetscReal *made);
 /* Tell the law of point p, if it has a length, the size of the cell in which the point starts (start/laws.c). */
 void size_start(const Model *model, PetscInt p);
 /* Smallest and largest of these sizes in each body, m, on this rank: 2 n_bodies, all 0 before. */
@@ -184,6 +187,7 @@ typedef struct {
   PetscInt cuts, iterations;
   Tries tries;
   NewtonMemory newton;
+  PetscReal made; /* by the room that points have heard of, J */
 } StepStart;
 
 /* A step that is not accepted leaves nodes as they were; one that was interrupted never was. */

@@ -59,11 +59,12 @@ static void test_scale(void **state)
   Random random = {3};
   (void)state;
   for (const Law *const *law = laws; *law; ++law) {
-    if (!(*law)->scale) continue;
+    if (!(*law)->scale || !(*law)->volume) continue;
     const Material m = mixed_material(*law);
     PetscReal old[LAW_MAX_STATE], now[LAW_MAX_STATE], tau[6], dF[9], before, after;
     law_initial_state(m.law, old);
     random_increment(&random, dF);
+    for (int i = 0; i < 9 && !bears_tension(*law); i += 4) dF[i] -= 0.03;
     assert_int_equal(m.law->update(m.parameters, 1, dF, old, now, tau, NULL), LAW_OK);
     m.law->volume(1, now, &before);
     ASSERT_NEAR(before, tensor_det(dF), 1e-12);

@@ -341,6 +341,30 @@ static void test_gmm(void **state)
   thrown("lme", LINEAR_ITERATIVE, CELL_HEXAHEDRON, 0.25);
 }
 
+/* Sand that flies apart, of which places know how much: what they told its points is taken back, too. */
+static void sand_given_up(void)
+{
+  NamedValue sand[] = {{(char *)"young", 1e6},
+                       {(char *)"poisson", 0.25},
+                       {(char *)"friction_angle", 30},
+                       {(char *)"cohesion", 0},
+                       {(char *)"opening_memory", 1}};
+  Bench b;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 8);
+  b.material.law = (char *)"mohr-coulomb";
+  b.material.n_parameters = 5;
+  b.material.parameters = sand;
+  bench_box(&b, 0, (PetscReal[]){0.25, 0, 0.25}, (PetscReal[]){0.75, 0.5, 0.75});
+  b.body[0].spin[2] = 5;
+  b.c.stabilisation.room = PETSC_TRUE;
+  b.c.gravity[1] = -100;
+  b.c.linear = LINEAR_DIRECT;
+  b.c.newton.residual = 1e-12;
+  bench_motion(&b, 1, 0, MOTION_FIXED, 3);
+  bench_dynamic(&b, 1, 1e-2);
+  given_up(&b, 3);
+}
+
 static void test_given_up(void **state)
 {
   static const char *const methods_[] = {"mpm", "fem", "gmm"};
@@ -361,6 +385,7 @@ static void test_given_up(void **state)
     b.c.newton.residual = 1e-12;
     given_up(&b, 3);
   }
+  sand_given_up();
 }
 
 /* Domains of points travel, and the ranks' parts have a halo. */

@@ -73,7 +73,7 @@ static PetscBool sum_row(const Discretisation *s, PetscInt slopes, PetscInt n, c
 static PetscErrorCode Fill(Discretisation *s, PetscReal *fill)
 {
   PetscFunctionBeginUser;
-  PetscCall(DiscretisationVolumes(s, PETSC_TRUE, fill));
+  PetscCall(DiscretisationVolumes(s, s->points->real[POINT_J], fill));
   for (PetscInt i = 0; i < s->grid->n_nodes; ++i) fill[i] = fill[i] > 0 ? 2 * fill[i] / s->whole[i] : 0;
   PetscFunctionReturn(0);
 }

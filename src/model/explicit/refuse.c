@@ -35,7 +35,6 @@ void explicit_check(const Model *m, Diag *diag)
     diag_error(diag, "analysis.update", "`usl` does not take transfer consistent: `musl` does");
   warn_of_usl(m, diag);
   refuse(c->analysis.keep_velocity, "analysis.keep_velocity", "`keep_velocity`", diag);
-  refuse(c->stabilisation.room, "stabilisation.room", "`room`", diag);
   refuse(c->basis.split > 0, "basis.gimp.split", "points that are split", diag);
   for (PetscInt k = 0; k < c->n_interfaces; ++k) {
     char path[64];

@@ -165,6 +165,18 @@ static PetscErrorCode Begin(Model *m, PetscReal step, Explicit *e, PetscReal bef
   PetscFunctionReturn(0);
 }
 
+/* Points learn of the room that they have by the nodes' functions, which substeps go without. */
+static PetscErrorCode Room(Model *m)
+{
+  PetscReal made;
+
+  PetscFunctionBeginUser;
+  if (!m->c->stabilisation.room) PetscFunctionReturn(0);
+  PetscCall(ModelInitialise(m));
+  PetscCall(ModelRoom(m, &made));
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode ExplicitStep(Model *m, PetscReal limit, StepReport *report)
 {
   const PetscReal step = PetscMin(limit, m->control.next), end = m->time + step;
@@ -173,6 +185,7 @@ PetscErrorCode ExplicitStep(Model *m, PetscReal limit, StepReport *report)
   PetscFunctionBeginUser;
   PetscCall(PetscMemzero(report, sizeof *report));
   PetscCall(ExplicitBalance(m, report));
+  PetscCall(Room(m));
   if (!m->explicit) PetscCall(ExplicitCreate(m, &m->explicit));
   Explicit *e = m->explicit;
   PetscCall(Begin(m, step, e, before, report));

@@ -79,26 +79,16 @@ static PetscBool has_no_stress(const Model *m, PetscInt p)
                                NULL) != LAW_OK;
 }
 
-static PetscBool remembers_openings(const MaterialSpec *spec)
-{
-  const Law *law = law_find(spec->law);
-  for (PetscInt i = 0; law && law->room && i < spec->n_parameters; ++i)
-    if (!strcmp(spec->parameters[i].name, "opening_memory")) return spec->parameters[i].value > 0;
-  return PETSC_FALSE;
-}
-
 void room_check(const Model *m, Diag *diag)
 {
-  PetscBool remembered = PETSC_FALSE;
   if (!m->c->stabilisation.room) return;
-  for (PetscInt i = 0; i < m->c->n_materials; ++i) remembered |= remembers_openings(m->c->materials + i);
   if (!m->method->restores_grid) {
     diag_error(diag, "stabilisation.room", "nodes of method %s go with the material: the room of points is theirs",
                m->method->name);
     diag_hint(diag, "leave it out; mpm needs it where grains flow on for long");
-  } else if (!remembered) {
-    diag_error(diag, "stabilisation.room", "no material of the case remembers what is open");
-    diag_hint(diag, "`opening_memory: 1` of law mohr-coulomb does");
+  } else if (!specs_yield(m->c->n_materials, m->c->materials)) {
+    diag_error(diag, "stabilisation.room", "no material of the case yields: what cannot flow keeps its room");
+    diag_hint(diag, "leave it out");
   }
 }
 

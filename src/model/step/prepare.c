@@ -51,6 +51,19 @@ void mark_fixed(Model *m)
   }
 }
 
+PetscErrorCode ModelRoom(Model *m, PetscReal *made)
+{
+  PetscReal local;
+
+  PetscFunctionBeginUser;
+  *made = 0;
+  if (!m->c->stabilisation.room) PetscFunctionReturn(0);
+  PetscCall(DiscretisationRoom(m->space, &local));
+  PetscCall(MPIU_Allreduce(&local, made, 1, MPIU_REAL, MPI_SUM, m->comm));
+  m->numerical_energy -= *made;
+  PetscFunctionReturn(0);
+}
+
 PetscErrorCode PrepareUnknowns(Model *m, StepStart *start, StepReport *report)
 {
   PetscLogDouble clock;
@@ -64,6 +77,7 @@ PetscErrorCode PrepareUnknowns(Model *m, StepStart *start, StepReport *report)
   mark_fixed(m);
   PetscCall(UnheldHold(m));
   PetscCall(StepStartKeep(m, start));
+  PetscCall(ModelRoom(m, &start->made)); /* points learn of it when they have their ranks */
   if (m->method->begin && m->scheme->inertia) PetscCall(m->method->begin(m->space));
   PetscCall(PetscArraycpy(m->nodes->v_first, m->nodes->v, m->grid->n_nodes * m->dim));
   PetscCall(PetscArraycpy(m->nodes->a_first, m->nodes->a, m->grid->n_nodes * m->dim));

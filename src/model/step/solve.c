@@ -199,6 +199,8 @@ PetscErrorCode StepStartRestore(Model *m, const StepStart *start, StepReport *re
   PetscFunctionBeginUser;
   PetscCall(MaterialsBack(m));
   rigid_back(m);
+  discretisation_room_back(m->space);
+  m->numerical_energy += start->made;
   if (m->method->restores_grid) m->space->present = PETSC_FALSE; /* points tell the nodes again */
   else {
     PetscCall(PetscArraycpy(m->nodes->v, m->nodes->v_start, dofs));

@@ -99,9 +99,8 @@ PetscErrorCode ModelStep(Model *m, PetscReal limit, StepReport *report)
   }
   PetscCall(ModelInitialise(m)); /* (a) nodes learn from where points are */
   /*     which of them have unknowns, and which are held */
-  PetscCall(NonlocalStep(m));              /*     and points of what is around them */
-  PetscCall(DiscretisationRoom(m->space)); /* and of the room that they have */
-  places_step(m);                          /*     and where they are */
+  PetscCall(NonlocalStep(m)); /*     and points of what is around them */
+  places_step(m);             /*     and where they are */
   PetscCall(PrepareUnknowns(m, &start, report));
   /* (b) their increments, in a shorter step if need be */
   PetscCall(SolveStep(m, &dt, report));

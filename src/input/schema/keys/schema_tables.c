@@ -247,11 +247,13 @@ static const SchemaEntry stabilisation_entries[] = {
   KEY("inertia", NUMBER, NULL,
       "share of the mass that resists what moves the nodes of a cell apart, times its empty part",
       .note = "0.01 if a law of the case yields, 0 if all are elastic", BETWEEN(0, 1), AT(StabilisationSpec, inertia)),
-  KEY("room", BOOLEAN, NULL,
-      "mpm, with `opening_memory`, not with `type: explicit`: grains are no farther apart, and J no larger, than the "
-      "room that the grid has around "
-      "their points allows, so that flows that go on for long neither shrink nor swell",
-      .fallback = "false", AT(StabilisationSpec, room)),
+  KEY(
+    "room", BOOLEAN, NULL,
+    "mpm: what flows keeps to the room that the grid has around its points. Denser than its volume allows it is "
+    "pressed "
+    "apart; grains with `opening_memory` are no farther apart, and J no larger, than there is room for. So flows that "
+    "go far or on for long neither shrink nor, with that memory, swell",
+    .fallback = "false", AT(StabilisationSpec, room)),
   {.key = NULL},
 };
 static const SchemaTable stabilisation = {

@@ -4,6 +4,12 @@
 /* share of the volume: 0.01 to 0.045 in columns, heaps and drums whose heights are right */
 #define CROWD_ALLOWED 0.05
 
+/* What has opened, and may have closed again unknown to its law, asks for no more room than before, m3. */
+static PetscReal asked(const Points *points, PetscInt p)
+{
+  return PetscMin(1, points->real[POINT_J][p]) * points->real[POINT_VOLUME][p];
+}
+
 /* Volume of points around each node, and of the cells there, m3 (n_nodes x 2); of each cell. */
 static PetscErrorCode Gather(const Model *m, PetscReal *around, PetscReal *room)
 {
@@ -20,7 +26,7 @@ static PetscErrorCode Gather(const Model *m, PetscReal *around, PetscReal *room)
   }
   for (PetscInt p = 0; p < points->n; ++p) /* what has just left the grid is in no cell */
     for (PetscInt i = 0; i < nn && points->cell[p] >= 0; ++i)
-      around[2 * grid->cell_node[points->cell[p] * nn + i]] += points->real[POINT_J][p] * points->real[POINT_VOLUME][p];
+      around[2 * grid->cell_node[points->cell[p] * nn + i]] += asked(points, p);
   PetscCall(GridSumToOwners(grid, 2, around));
   PetscCall(GridToGhosts(grid, 2, around));
   PetscFunctionReturn(0);
@@ -63,9 +69,10 @@ PetscErrorCode WarnOfCrowd(const Model *m, Diag *diag)
   if (!(sum[1] > CROWD_ALLOWED * sum[0])) PetscFunctionReturn(0);
   diag_warning(diag, NULL, "points have come together: %.2g %% of the material's volume is more than its cells hold",
                (double)(100 * sum[1] / sum[0]));
-  diag_hint(diag,
-            "heights and densities are no longer those of the material: displacements with `basis: gimp` and nine "
-            "points a cell, or `{split: ..}`, lessen it most, finer cells do not; grains with `opening_memory`: "
-            "`stabilisation: {room: true}` (docs/guide/limits.md)");
+  diag_hint(
+    diag,
+    "heights, densities and stresses are no longer those of the material: %sdisplacements with `basis: gimp` and "
+    "nine points a cell, or `{split: ..}`, lessen it most, finer cells do not (docs/guide/limits.md)",
+    m->c->stabilisation.room ? "" : "`stabilisation: {room: true}` presses apart what flows; ");
   PetscFunctionReturn(0);
 }

@@ -22,7 +22,8 @@ PetscReal energy_share(const Model *m, PetscReal energy)
 static PetscReal taken_by_transfer(const Model *m)
 {
   const PetscReal sum = m->transfer_energy + m->numerical_energy;
-  const PetscBool cancels = (PetscBool)(m->contact && PetscAbsReal(sum) < PetscAbsReal(m->transfer_energy));
+  const PetscBool cancels =
+    (PetscBool)(m->contact && !m->c->stabilisation.room && PetscAbsReal(sum) < PetscAbsReal(m->transfer_energy));
   return cancels ? sum : m->transfer_energy;
 }
 
