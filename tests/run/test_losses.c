@@ -1,4 +1,5 @@
-/* Runs say when points have come together: their volumes are more than their cells hold. */
+/* Runs say when points have come together: their volumes are more than their cells hold; and when those that bear count
+ * as farther apart than they are. */
 #include "../model/case_builder.h"
 #include "model/model_private.h"
 #include "run/report/losses.h"
@@ -41,6 +42,42 @@ static void test_crowd(void **state)
   assert_int_equal(warnings(1), 0);
   assert_int_equal(warnings(1.04), 0); /* 4 % of the volume are too much */
   assert_int_equal(warnings(1.1), 1);  /* 9 % */
+}
+
+/* Is it said of soil that fills its grid, bears so much and has this J? */
+static PetscBool said_apart(PetscReal pressure, PetscReal J)
+{
+  NamedValue soil[] = {{(char *)"young", 1e6}, {(char *)"poisson", 0.25}, {(char *)"yield_stress", 1e3}};
+  PetscMPIInt rank;
+  Bench b;
+  bench_init(&b, "mpm", CELL_QUADRILATERAL, 4);
+  bench_dynamic(&b, 1, 1e-2);
+  b.material.law = (char *)"j2";
+  b.material.n_parameters = 3;
+  b.material.parameters = soil;
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    const PetscBool left = (PetscBool)(point_real(m->points, POINT_X, p)[0] < 0.5); /* the others hang free */
+    for (int k = 0; k < 3; ++k) point_real(m->points, POINT_TAU, p)[k] = left ? -pressure : pressure;
+    m->points->real[POINT_J][p] = left ? J : 2;
+  }
+  char *said = said_of(m, NULL);
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  PetscBool found = (PetscBool)(strstr(said, "stresses of what has flowed are too small") != NULL);
+  CHECK(rank || !found || strstr(said, "by 17 %"), "1 - 1 / 1.2: %s", said);
+  CALL(MPI_Bcast(&found, 1, MPIU_BOOL, 0, PETSC_COMM_WORLD));
+  free(said);
+  CALL(ModelDestroy(&m));
+  return found;
+}
+
+static void test_apart(void **state)
+{
+  (void)state;
+  assert_false(said_apart(100, 1));
+  assert_false(said_apart(100, 1.04));
+  assert_true(said_apart(100, 1.2));
+  assert_false(said_apart(0, 1.2)); /* nothing bears */
 }
 
 /* What a strain that is no number is said to be, of a body that is there and of a place where nothing is. */
@@ -127,7 +164,8 @@ static void test_made(void **state)
 
 int main(int argc, char **argv)
 {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_crowd), cmocka_unit_test(test_no_number),
-                                     cmocka_unit_test(test_kept), cmocka_unit_test(test_made)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_crowd), cmocka_unit_test(test_apart),
+                                     cmocka_unit_test(test_no_number), cmocka_unit_test(test_kept),
+                                     cmocka_unit_test(test_made)};
   return run_model_tests(argc, argv, tests);
 }

@@ -91,8 +91,10 @@ PetscErrorCode LossesLogEnd(const Model *m, RunDir *dir)
       (double)m->transfer_energy, (double)(100 * energy_share(m, m->transfer_energy)), (double)m->most_energy));
   const PetscReal numerical = energy_share(m, m->numerical_energy);
   if (PetscAbsReal(numerical) > TRANSFER_ALLOWED)
-    PetscCall(RunDirLog(dir, "numerical = %.6g J taken by the damping of the time scheme, %.2g %% of what came in",
-                        (double)m->numerical_energy, (double)(100 * numerical)));
+    PetscCall(RunDirLog(dir, "numerical = %.6g J taken by the damping of the time scheme%s, %.3g %% of what came in",
+                        (double)m->numerical_energy,
+                        m->c->stabilisation.room ? " less what stabilisation.room makes" : "",
+                        (double)(100 * numerical)));
   PetscFunctionReturn(0);
 }
 
@@ -116,6 +118,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   warn_of_outside(&m->outside, diag);
   PetscCall(WarnOfEnergy(m, diag));
   PetscCall(WarnOfCrowd(m, diag));
+  PetscCall(WarnOfApart(m, diag));
   PetscCall(WarnOfMovedLoads(m, diag));
   PetscCall(WarnOfShear(m, diag));
   PetscCall(WarnOfStretch(m, diag));

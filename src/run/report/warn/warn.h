@@ -19,6 +19,8 @@ PetscErrorCode WarnOfEmpty(const Model *model, const PetscReal *values, Diag *di
 
 /* Collective. Cells that hold more material than their room. */
 PetscErrorCode WarnOfCrowd(const Model *model, Diag *diag);
+/* Collective. Grains under pressure that their law counts as farther apart than they are. */
+PetscErrorCode WarnOfApart(Model *model, Diag *diag);
 
 /* Collective. How far a loaded surface has come, in cells, where its loads are then not where the stress is that bears
  * them: functions that are not averaged over points and pieces of the surface (docs/theory.md, "Pieces of a loaded
