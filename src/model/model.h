@@ -22,7 +22,8 @@ typedef struct {
   /* gone with points that left the grid, and in holding others at its boundary, since the start,
    * J */
   PetscReal outside;
-  PetscReal start; /* kinetic and elastic at the start, J */
+  /* kinetic and elastic at the start, and what has come and gone with bodies and walls since, J */
+  PetscReal start;
 } Energies;
 
 /* Of a mean over steps: that since the last row of the history, over how long, s, and 1 once a row has it. */

@@ -213,6 +213,9 @@ void explicit_check(const Model *model, Diag *diag);
 PetscErrorCode ExplicitBalance(Model *model, StepReport *report);
 /* Kinetic energy of this rank's points, and work of their stress, J. */
 void energy_of_points(const Model *model, PetscReal energy[2]);
+/* What the account begins with of what is there now, J; most_energy is not less than that with all work since. */
+PetscReal energy_at_start(const Model *model);
+void energy_note_most(Model *model);
 /* step/accept.c. Before the new state is there (sign -1) and after: what it has more of plastic strain. */
 void note_flow(Model *model, PetscReal sign);
 /* step/entered.c. Collective. Whether parts of clouds that are strangers to each other have met (Model.entered). */
@@ -257,9 +260,12 @@ PetscErrorCode BondsBegin(Model *model, const Case *from, Diag *diag);
 void contact_bond(const Model *model, PetscInt p, const PetscReal normal[3], PetscReal gap, const PetscReal *was,
                   PetscReal *kept);
 /* contact/rigid.c. What walls with mass cannot do; energies of theirs, J, the same on all ranks: of motion (of those
- * that are there; statics have none), and work of weight and loads since the start. */
+ * that are there; statics have none), and work of weight and loads since the start. away: of motion of those before
+ * their `from`, and after their `until`. Nothing moves them, and the account has them from its start on: they are taken
+ * off that (energy_at_start). */
 void rigid_check(const Model *model, Diag *diag);
 PetscReal rigid_motion(const Model *model);
+PetscReal rigid_away(const Model *model);
 PetscReal rigid_work(const Model *model);
 /* What impulses took from them in the last step, J. */
 PetscReal rigid_lost(const Model *model);

@@ -45,3 +45,40 @@ static inline PetscReal spinning_box(WallSpec *wall, PetscReal L[3])
   }
   return energy;
 }
+
+/* A roll as heavy_ball's that comes at 0.02 s, and another one that vanishes at 0.03 s, both pushed down by 1 kN, far
+ * from everything: motion counts while they are there, work stays, and the account closes at every time. The rest of
+ * the model does not move. */
+static inline void heavy_comes_and_goes(Bench *b, const WallSpec *ball)
+{
+  const PetscReal mass = 2000 * PETSC_PI * 0.09, spinning = 0.5 * mass * 0.045 * 4, from = 0.02, until = 0.03;
+  WallSpec wall[2] = {*ball, *ball};
+  for (int k = 0; k < 2; ++k) {
+    wall[k].shape.centre[1] += 10;
+    wall[k].mass.force[1] = -1e3;
+    wall[k].mass.gravity = PETSC_FALSE;
+  }
+  wall[0].from = from;
+  wall[1].name = (char *)"gone", wall[1].has_until = PETSC_TRUE, wall[1].until = until;
+  b->c.n_walls = 2, b->c.walls = wall;
+  Model *m = bench_model(b, PETSC_COMM_WORLD);
+  for (int k = 0; k <= 8; ++k) {
+    const PetscReal acts[2] = {PetscMax(0, m->time - from), PetscMin(until, m->time)};
+    PetscReal motion = 0, work = 0;
+    Energies e;
+    for (int w = 0; w < 2; ++w) {
+      const PetscReal down = 2 + 1e3 * acts[w] / mass, own = 0.5 * mass * (0.25 + down * down) + spinning;
+      motion += (w == 0 ? m->time > from - 1e-9 : m->time < until + 1e-9) * own;
+      work += 1e3 * acts[w] * (2 + down) / 2;
+    }
+    CALL(ModelEnergies(m, &e));
+    CHECK_CLOSE(e.kinetic, motion, 1e-9 * motion);
+    CHECK_CLOSE(model_sum(m, "energy: kinetic", 0), motion, 1e-9 * motion);
+    CHECK_CLOSE(e.external, work, 1e-9 * motion);
+    CHECK(PetscAbsReal(model_sum(m, "energy: balance", 0)) < 1e-9, "open at %g s", (double)m->time);
+    CHECK(m->most_energy < 1.1 * 2 * (0.5 * mass * (0.25 + 4.5) + spinning), "%g J came in", (double)m->most_energy);
+    model_step(m, 5e-3);
+  }
+  CHECK(m->time > 0.04, "it ends at %g s", (double)m->time);
+  CALL(ModelDestroy(&m));
+}

@@ -242,11 +242,20 @@ static void test_left(void **state)
   CALL(ModelDestroy(&m));
 }
 
+static void test_comes_and_goes(void **state)
+{
+  Bench b;
+  WallSpec wall;
+  (void)state;
+  below_ball(&b, hits, 0.125, &wall);
+  heavy_comes_and_goes(&b, &wall);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_hits),  cmocka_unit_test(test_as_implicit),
                                      cmocka_unit_test(test_flies), cmocka_unit_test(test_rests),
                                      cmocka_unit_test(test_ranks), cmocka_unit_test(test_resumed),
-                                     cmocka_unit_test(test_left)};
+                                     cmocka_unit_test(test_left),  cmocka_unit_test(test_comes_and_goes)};
   return run_model_tests_in_turns(argc, argv, tests);
 }

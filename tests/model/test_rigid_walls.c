@@ -480,13 +480,27 @@ static void test_centreless(void **state)
   CALL(ModelDestroy(&m));
 }
 
+static void test_comes_and_goes(void **state)
+{
+  static const Hit ways[] = {{"mpm", "cell", NULL, CELL_QUADRILATERAL, 0, PETSC_FALSE, 0, 0},
+                             {"fem", "cell", NULL, CELL_QUADRILATERAL, 0, PETSC_FALSE, 0, 0}};
+  (void)state;
+  EACH_OF (k, ways) {
+    Bench b;
+    WallSpec wall;
+    below_ball(&b, &ways[k], PETSC_TRUE, &wall);
+    heavy_comes_and_goes(&b, &wall);
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-    cmocka_unit_test(test_hits),    cmocka_unit_test(test_several),    cmocka_unit_test(test_flies),
-    cmocka_unit_test(test_turns),   cmocka_unit_test(test_stands),     cmocka_unit_test(test_floats),
-    cmocka_unit_test(test_endless), cmocka_unit_test(test_centreless), cmocka_unit_test(test_carries),
-    cmocka_unit_test(test_rests),   cmocka_unit_test(test_tilts),      cmocka_unit_test(test_grips),
+    cmocka_unit_test(test_hits),           cmocka_unit_test(test_several),    cmocka_unit_test(test_flies),
+    cmocka_unit_test(test_turns),          cmocka_unit_test(test_stands),     cmocka_unit_test(test_floats),
+    cmocka_unit_test(test_endless),        cmocka_unit_test(test_centreless), cmocka_unit_test(test_carries),
+    cmocka_unit_test(test_rests),          cmocka_unit_test(test_tilts),      cmocka_unit_test(test_grips),
+    cmocka_unit_test(test_comes_and_goes),
   };
   return run_model_tests_in_turns(argc, argv, tests);
 }

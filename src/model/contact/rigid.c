@@ -30,13 +30,26 @@ void rigid_check(const Model *m, Diag *diag)
            diag);
 }
 
-PetscReal rigid_motion(const Model *m)
+/* Does it stand as the last step ends, or the next one begins? What meets it then sees it, too (wall_near). */
+static PetscBool is_there(const Model *m, PetscInt wall)
+{
+  return (PetscBool)(wall_stands(m->walls, wall, m->time) || wall_comes(m->walls, wall, m->time));
+}
+
+/* Of those that are there, or of the others; what stages have left out is neither. */
+static PetscReal motion_of(const Model *m, PetscBool there)
 {
   PetscReal sum = 0;
-  for (PetscInt k = 0; k < count(m) && m->scheme->inertia; ++k)
-    if (!m->c->walls[m->contact->rigid[k].wall].absent) sum += rigid_kinetic(m->contact->rigid + k);
+  for (PetscInt k = 0; k < count(m) && m->scheme->inertia; ++k) {
+    const PetscInt wall = m->contact->rigid[k].wall;
+    if (!m->c->walls[wall].absent && is_there(m, wall) == there) sum += rigid_kinetic(m->contact->rigid + k);
+  }
   return sum;
 }
+
+PetscReal rigid_motion(const Model *m) { return motion_of(m, PETSC_TRUE); }
+
+PetscReal rigid_away(const Model *m) { return motion_of(m, PETSC_FALSE); }
 
 PetscReal rigid_work(const Model *m)
 {

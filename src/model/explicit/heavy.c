@@ -80,6 +80,13 @@ static PetscErrorCode Sum(const Model *m, PetscReal *sum)
   PetscFunctionReturn(0);
 }
 
+/* In a substep that begins. The half kick that closes the run's step is of what was there in that, as in walls.c:
+ * one that comes then has none of it yet, one that goes has it still. */
+static PetscBool is_there(const Model *m, const Explicit *e, PetscInt wall)
+{
+  return e->dt > 0 ? wall_comes(m->walls, wall, e->time) : wall_stands(m->walls, wall, e->time);
+}
+
 PetscErrorCode HeavyMove(Model *m, Explicit *e)
 {
   Contact *s = m->contact;
@@ -93,7 +100,7 @@ PetscErrorCode HeavyMove(Model *m, Explicit *e)
     RigidWall *b = s->rigid + k;
     const PetscReal swing = sum[SUMS * k + RIGID] / e->ease[k];
     for (int i = 0; i < RIGID; ++i) b->contact[i] = sum[SUMS * k + i];
-    b->stands = wall_comes(m->walls, b->wall, e->time);
+    b->stands = is_there(m, e, b->wall);
     rigid_kick(b, m->c, e->time, e->kick);
     rigid_drift(b, e->dt);
     e->ease[k] = swing > e->swing ? e->swing / swing : 1;

@@ -103,6 +103,9 @@ static PetscErrorCode Judge(Model *m, const Explicit *e, StepReport *report)
   PetscFunctionReturn(0);
 }
 
+/* Of walls with mass, whether they are there or not: what comes or goes as a step begins is none of its losses. */
+static PetscReal all_motion(const Model *m) { return rigid_motion(m) + rigid_away(m); }
+
 /* Accounts: what came in and is neither kinetic nor work of the stress was lost between points and grid, or by
  * the substeps. `before`: kinetic energy and work of the stress. */
 static PetscErrorCode Account(Model *m, const Explicit *e, const PetscReal before[2])
@@ -117,9 +120,9 @@ static PetscErrorCode Account(Model *m, const Explicit *e, const PetscReal befor
   m->external_work += sum[0];
   m->boundary_work += sum[1];
   m->damped_energy += sum[2];
-  m->transfer_energy += sum[3] + rigid_work(m) - rigid_motion(m) - e->driven;
+  m->transfer_energy += sum[3] + rigid_work(m) - all_motion(m) - e->driven;
   m->friction_energy += sum[4];
-  m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work + rigid_work(m));
+  energy_note_most(m);
   PetscFunctionReturn(0);
 }
 
@@ -152,7 +155,7 @@ static PetscErrorCode Begin(Model *m, PetscReal step, Explicit *e, PetscReal bef
   e->outside = m->outside.energy;
   e->status = LAW_OK;
   e->external = e->boundary = e->damped = 0;
-  e->driven = rigid_work(m) - rigid_motion(m);
+  e->driven = rigid_work(m) - all_motion(m);
   for (PetscInt k = 0; m->contact && k < m->contact->n_rigid; ++k) e->ease[k] = 1;
   if (m->contact) PetscCall(PetscArrayzero(e->pushed, m->contact->n_partners));
   if (m->contact) PetscCall(PetscArrayzero(e->rubbed, m->contact->n_partners));

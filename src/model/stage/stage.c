@@ -160,12 +160,12 @@ static PetscErrorCode KeepAccount(Model *m, PetscReal stored_then, const Model *
 
   PetscFunctionBeginUser;
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
-  sum[1] += rigid_motion(m);
+  sum[1] += rigid_motion(m) + rigid_away(m);
   if (before) {
-    m->start_energy += sum[1] - sum[0] - rigid_motion(before);
+    m->start_energy += sum[1] - sum[0] - rigid_motion(before) - rigid_away(before);
     m->external_work += rigid_work(before) - rigid_work(m);
   } else m->start_energy = sum[1], m->open_energy = 0;
-  m->most_energy = PetscMax(before ? m->most_energy : 0, m->start_energy + m->external_work + m->boundary_work);
+  m->most_energy = PetscMax(before ? m->most_energy : 0, energy_at_start(m) + m->external_work + m->boundary_work);
   PetscFunctionReturn(0);
 }
 

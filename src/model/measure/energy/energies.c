@@ -80,7 +80,7 @@ static PetscErrorCode BalanceValue(Model *m, const MeasureSpec *s, PetscInt inde
 }
 
 static const MeasureNumber *const words[] = {
-  WORD("kinetic", "energy of motion; of the whole model that of walls with mass, too", .sum = kinetic),
+  WORD("kinetic", "energy of motion; of the whole model that of walls with mass that are there, too", .sum = kinetic),
   WORD("elastic", "stored in the material", .sum = elastic),
   WORD("mechanical", "kinetic and elastic: what an elastic body that is left alone keeps", .sum = mechanical),
   WORD("dissipated", "work of the stress that is not stored: plastic dissipation", .sum = dissipated),

@@ -108,8 +108,8 @@ PetscErrorCode EnergyStart(Model *m)
   }
   local[0] = points_kinetic(m) + points_work(m);
   PetscCall(MPIU_Allreduce(local, sum, 2, MPIU_REAL, MPI_SUM, m->comm));
-  sum[0] += rigid_motion(m);
-  m->start_energy = m->most_energy = sum[0];
+  m->most_energy = sum[0] + rigid_motion(m);
+  m->start_energy = m->most_energy + rigid_away(m);
   m->least_energy = sum[1];
   PetscFunctionReturn(0);
 }
@@ -335,8 +335,16 @@ PetscErrorCode EnergyClose(Model *m, EnergyStep *e)
   m->numerical_energy += sum[5];
   m->held_energy += sum[6];
   m->open_energy += sum[7];
-  m->most_energy = PetscMax(m->most_energy, m->start_energy + m->external_work + m->boundary_work + rigid_work(m));
+  energy_note_most(m);
   PetscFunctionReturn(0);
+}
+
+PetscReal energy_at_start(const Model *m) { return m->start_energy - rigid_away(m); }
+
+void energy_note_most(Model *m)
+{
+  const PetscReal all = energy_at_start(m) + m->external_work + m->boundary_work + rigid_work(m);
+  m->most_energy = PetscMax(m->most_energy, all);
 }
 
 void energy_of_points(const Model *m, PetscReal energy[2])
@@ -367,6 +375,6 @@ PetscErrorCode ModelEnergies(Model *m, Energies *e)
                   .numerical = m->numerical_energy,
                   .held = m->held_energy,
                   .outside = m->outside.energy,
-                  .start = m->start_energy};
+                  .start = energy_at_start(m)};
   PetscFunctionReturn(0);
 }
