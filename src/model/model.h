@@ -165,8 +165,8 @@ typedef struct Model {
   PetscReal *drawn; /* of fem with stages: n_nodes x dim, where nodes were before any state was taken, m; else NULL */
   /* while a stage of dynamics begins: n_nodes x 2 dim, of the one before (motion/jump.c); else NULL */
   PetscReal *balanced;
-  /* while a stage of statics begins, or one of dynamics that releases: n_nodes x dim, N, of the one before
-   * (stage/remainder.c); else NULL */
+  /* while a stage of statics begins, or one of dynamics that releases: n_nodes x 2 dim, N, of the one before where it
+   * left nodes free, and where it held them (stage/remainder.c); else NULL */
   PetscReal *remainder;
   Points *points;
   Points *tracers; /* body = index of the measure */

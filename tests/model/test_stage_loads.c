@@ -2,7 +2,7 @@
  * the end. What no stage can bring is refused beforehand. Of what is out of balance as a stage begins, what points that
  * moved have left is none that it releases. */
 #include "case_builder.h"
-#include "model/stage/stage.h"
+#include "model/stage/stage_private.h"
 
 static void block(Bench *b, const char *method)
 {
@@ -216,6 +216,44 @@ static void test_unchanged(void **state)
   }
 }
 
+/* Forces out of balance at the start of the stage, N, those of nodes at a height: the largest there, or elsewhere. */
+static PetscReal out_of_balance(Model *m, PetscReal height, PetscBool there)
+{
+  PetscReal *residual, most = 0;
+  CALL(PetscCalloc1(m->grid->n_nodes * 2, &residual));
+  CALL(Residual(m, residual));
+  for (PetscInt i = 0; i < m->grid->n_owned * 2; ++i) {
+    const PetscBool is_there = PetscAbsReal(m->grid->x[i / 2 * 2 + 1] - height) < 1e-9;
+    if (is_there == there && !m->boundary->fixed[i]) most = PetscMax(most, PetscAbsReal(residual[i]));
+  }
+  CALL(PetscFree(residual));
+  CALL(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPIU_MAX, PETSC_COMM_WORLD));
+  return most;
+}
+
+/* A boundary lets go what it has pulled: its nodes are held with what they bear as points stand now, and feel nothing
+ * at once of what these left as they moved. That is of the other nodes alone. */
+static void test_lets_go(void **state)
+{
+  (void)state;
+  EACH_VARIANT (kind, 2) {
+    Bench one, then;
+    soft_block(&one, (int)kind);
+    soft_block(&then, (int)kind);
+    one.c.n_loads = then.c.n_loads = 0;
+    bench_motion(&one, 1, 1, MOTION_VELOCITY, 3)->value[1] = 0.1;
+    then.c.stage = 1;
+    then.c.start = 1;
+    then.c.analysis.end = 2;
+    Model *m = bench_model(&one, PETSC_COMM_WORLD);
+    for (int k = 0; k < 4; ++k) model_step(m, 0.25);
+    m = succeed(m, &then);
+    const PetscReal at = out_of_balance(m, 1, PETSC_TRUE), beside = out_of_balance(m, 1, PETSC_FALSE);
+    CHECK(beside > 100 && at < 1e-9 * beside, "%g N on what was held, %g N beside it", (double)at, (double)beside);
+    CALL(ModelDestroy(&m));
+  }
+}
+
 /* The upper half goes, and what points have left out of balance is held with what it bore: the foot bears the weight of
  * the rest, and what there still is of the other. */
 static void test_goes(void **state)
@@ -252,6 +290,7 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_tractions), cmocka_unit_test(test_pressures),
                                      cmocka_unit_test(test_refused),   cmocka_unit_test(test_fades),
-                                     cmocka_unit_test(test_unchanged), cmocka_unit_test(test_goes)};
+                                     cmocka_unit_test(test_unchanged), cmocka_unit_test(test_goes),
+                                     cmocka_unit_test(test_lets_go)};
   return run_model_tests(argc, argv, tests);
 }

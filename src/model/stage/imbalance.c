@@ -87,7 +87,7 @@ static PetscErrorCode Lack(Model *m, PetscReal *residual)
 {
   PetscFunctionBeginUser;
   PetscCall(Residual(m, residual));
-  for (PetscInt i = 0; i < m->grid->n_owned * m->dim && m->remainder; ++i) residual[i] -= m->remainder[i];
+  PetscCall(RemainderTakeOff(m, residual));
   PetscFunctionReturn(0);
 }
 

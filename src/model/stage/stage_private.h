@@ -91,6 +91,8 @@ PetscErrorCode RemainderFrom(Model *before, Tables *tables);
  * until it is forgotten. held: the sum of what is held all the same, N. */
 PetscErrorCode RemainderExpect(Model *model);
 PetscErrorCode RemainderTo(Model *model, const Case *from, const Tables *tables, PetscReal *held);
+/* Residual, of owned nodes, less that, once it is known which nodes are held. */
+PetscErrorCode RemainderTakeOff(const Model *model, PetscReal *residual);
 PetscErrorCode RemainderForget(Model *model);
 /* taken_over.c. Is it known what of the forces that lack is inertia? */
 PetscBool inertia_is_known(const Model *model, const Case *from);
