@@ -164,4 +164,31 @@ left_of "a corner along a side, mpm" 436 1 --set method=mpm --set "$wide" \
   --set analysis.transfer=consistent --set analysis.step=5e-4
 left_of "a corner along a side, its body first" 480 1 --set 'interfaces[0].between=[soft, stiff]'
 
+# An elastic cube that fits into a box which holds it by strong friction goes where that goes.
+cat >fits.yaml <<'END'
+kinematics: 3d
+method: fem
+analysis: {type: dynamic, end: 1, step: 1e-2}
+grid: {box: {min: [0, 0, 0], max: [0.4, 0.4, 0.4]}, size: 0.2, cell: hexahedron}
+bodies: [{name: cube, shape: {box: {min: [0, 0, 0], max: [0.4, 0.4, 0.4]}}, material: rubber}]
+materials: {rubber: {law: neo-hookean, density: 1500, young: 1e6, poisson: 0.3}}
+walls:
+  - name: case
+    shape: {box: {min: [0, 0, 0], max: [0.4, 0.4, 0.4]}}
+    inside: true
+    contact: stick
+    motion: [{velocity: {x: 0.4}, amplitude: [[0, 0], [0.5, 1], [1, 0]]}]
+measures: {x: {position: x, of: {tracer: [0.3, 0.2, 0.1]}}}
+output: {fields: [displacement], every: end}
+END
+# carried NAME RANKS OPTIONS...
+carried() {
+  name=$1 ranks=$2
+  shift 2
+  expect "$name" 0 on_ranks $ranks "$talus" run fits.yaml --out fits --force --quiet "$@"
+  awk -F, 'END { exit !($1 > 1 - 1e-9 && ($3 - 0.5) ^ 2 < 5e-5 ^ 2) }' fits/history.csv || fail "$name: $(tail -n 1 fits/history.csv)"
+}
+carried "a cube in a box that sticks" 2
+carried "a cube in a box, friction 5" 1 --set "walls[0].contact=friction" --set "walls[0].friction=5"
+
 finish

@@ -101,6 +101,46 @@ static PetscErrorCode SolveInPseudoTime(Model *m, StepProblem *problem, const Li
   PetscFunctionReturn(0);
 }
 
+/* Newton from a first guess; again: not the first try of the step. */
+static PetscErrorCode SolveFrom(Model *m, FirstGuess guess, PetscReal dt, StepProblem *problem,
+                                const LinearProblem *linear, PetscBool again, PetscLogDouble *clock, StepReport *report)
+{
+  PetscFunctionBeginUser;
+  PetscCall(MakeGuess(m, guess, dt));
+  problem->grips = (PetscBool)(guess == GUESS_GRIPPED);
+  pressure_guess(m);
+  PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, clock));
+  materials_step(m->c->n_materials, m->materials, case_time(m->c, m->time), dt * time_solved(m->scheme),
+                 m->scheme->inertia);
+  PetscCall(NewtonSolve(m->newton, problem, linear, &report->newton));
+  if (report->newton.converged) PetscCall(GoOn(m, dt, report));
+  if (report->newton.converged) PetscCall(UnheldJudge(m, problem, linear, report));
+  if (report->newton.converged) PetscCall(JudgeStep(m, report));
+  if (report->newton.converged) PetscCall(StrengthJudge(m, report));
+  PetscCall(PetscTime(clock));
+  count_try(m, again, report);
+  PetscFunctionReturn(0);
+}
+
+/* The nearest guess once more where strong friction may have thrown the iteration back; a search goes on in its own
+ * ways. */
+static PetscErrorCode SolveSoftened(Model *m, FirstGuess guess, PetscReal dt, StepProblem *problem,
+                                    const LinearProblem *linear, PetscLogDouble *clock, StepReport *report)
+{
+  PetscBool softer;
+
+  PetscFunctionBeginUser;
+  if (!m->contact || m->strength.trying) PetscFunctionReturn(0);
+  PetscCall(ContactSoften(m->contact, m->comm, &softer));
+  if (softer) PetscCall(SolveFrom(m, guess, dt, problem, linear, PETSC_TRUE, clock, report));
+  PetscFunctionReturn(0);
+}
+
+static PetscBool is_over(const StepReport *report)
+{
+  return (PetscBool)(report->newton.converged || report->newton.interrupted);
+}
+
 /* Newton from the nearest first guess, and where it fails from the others: a step is halved only
  * if none of them leads to its solution. */
 static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProblem *linear, StepReport *report)
@@ -114,22 +154,9 @@ static PetscErrorCode SolveFromGuesses(Model *m, PetscReal dt, const LinearProbl
   PetscCall(PetscTime(&clock));
   PetscCall(PrepareStep(m, dt, &problem));
   PetscCall(OrderGuesses(m, dt, &problem, guess, &guesses));
-  for (PetscInt k = 0; k < guesses; ++k) {
-    PetscCall(MakeGuess(m, guess[k], dt));
-    problem.grips = (PetscBool)(guess[k] == GUESS_GRIPPED);
-    pressure_guess(m);
-    PetscCall(PhaseEnd(m->seconds, PHASE_PREPARE, &clock));
-    materials_step(m->c->n_materials, m->materials, case_time(m->c, m->time), dt * time_solved(m->scheme),
-                   m->scheme->inertia);
-    PetscCall(NewtonSolve(m->newton, &problem, linear, &report->newton));
-    if (report->newton.converged) PetscCall(GoOn(m, dt, report));
-    if (report->newton.converged) PetscCall(UnheldJudge(m, &problem, linear, report));
-    if (report->newton.converged) PetscCall(JudgeStep(m, report));
-    if (report->newton.converged) PetscCall(StrengthJudge(m, report));
-    PetscCall(PetscTime(&clock));
-    count_try(m, k > 0, report);
-    if (report->newton.converged || report->newton.interrupted) break;
-  }
+  for (PetscInt k = 0; k < guesses && !(k > 0 && is_over(report)); ++k)
+    PetscCall(SolveFrom(m, guess[k], dt, &problem, linear, (PetscBool)(k > 0), &clock, report));
+  if (!is_over(report)) PetscCall(SolveSoftened(m, guess[0], dt, &problem, linear, &clock, report));
   if (is_lost(m, report)) PetscCall(SolveInPseudoTime(m, &problem, linear, report));
   PetscFunctionReturn(0);
 }

@@ -52,6 +52,7 @@ typedef struct {
   PetscReal own_bond;       /* that the wall bears along itself without pressure, N, */
   PetscReal bond;           /* with what others lend it: ContactLend */
   ContactLaw law;
+  PetscReal cell;     /* what a cell opposes to it at the surface, N/m */
   PetscReal stiffest; /* penalty, N/m */
   PetscReal borne;    /* explicit dynamics: the share of its spring that the substep bears */
   PetscReal left;     /* gap or slip when multipliers were last changed, m; 0: not yet in contact */
@@ -164,6 +165,10 @@ PetscErrorCode ContactFind(Contact *contact, const NodalScene *scene);
 void contact_stand(Contact *contact, PetscReal share);
 /* Before the solve of a step of dt: penalties, and how walls move. inertia: see WeakFormInput. */
 void contact_prepare(Contact *contact, PetscReal t, PetscReal dt, PetscReal inertia, ContactShare share);
+/* Collective. The same for another try, with less along walls and bodies, where anything rubs so much that a push along
+ * one may wedge it (softer): what friction bears goes with the gap by friction times the penalty, and the gap with what
+ * it bears (docs/theory.md, section 98). */
+PetscErrorCode ContactSoften(Contact *contact, MPI_Comm comm, PetscBool *softer);
 /* contact_alone.c. Collective. Then: how far penalties of what is bonded may rise (ContactPoint.stiffest). wide: do
  * functions reach farther than to the nodes of a cell? */
 PetscErrorCode ContactFindAlone(Contact *contact, const Grid *grid, PetscBool wide);

@@ -121,9 +121,9 @@ void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, C
 {
   s->share = share;
   for (ContactPoint *c = s->point; c < s->point + s->n; ++c) {
-    const PetscReal cell = c->section * stiffness_of(c, s->length, inertia);
-    c->law.penalty = STIFFER * cell;
-    c->law.along = (share.yields && c->law.kind == CONTACT_FRICTION ? ALONG_FLOWS : STIFFER) * c->softer * cell;
+    c->cell = c->section * stiffness_of(c, s->length, inertia);
+    c->law.penalty = STIFFER * c->cell;
+    c->law.along = (share.yields && c->law.kind == CONTACT_FRICTION ? ALONG_FLOWS : STIFFER) * c->softer * c->cell;
     c->stiffest = stiffest_of(s, c);
     c->ahead = c->reach;
     c->left = 0;
@@ -135,6 +135,28 @@ void contact_prepare(Contact *s, PetscReal t, PetscReal dt, PetscReal inertia, C
     if (c->wall < s->n_walls && !contact_rigid(s, c)) wall_motion(s->walls, c->wall, t, t + dt, c->x, c->swept);
     first_multiplier(s, c);
   }
+}
+
+/* As the step began, but for what slips oppose. */
+static void soften(const Contact *s, ContactPoint *c)
+{
+  c->law.penalty = STIFFER * c->cell;
+  c->law.along = ALONG_FLOWS * c->softer * c->cell / PetscMax(1, c->law.friction);
+  c->left = 0;
+  first_multiplier(s, c);
+}
+
+PetscErrorCode ContactSoften(Contact *s, MPI_Comm comm, PetscBool *softer)
+{
+  PetscBool jams = PETSC_FALSE;
+
+  PetscFunctionBeginUser;
+  for (const ContactPoint *c = s->point; c < s->point + s->n; ++c)
+    jams |= c->law.kind != CONTACT_BONDED && c->law.friction > 1 && contact_touched(c);
+  PetscCallMPI(MPI_Allreduce(&jams, softer, 1, MPIU_BOOL, MPI_LOR, comm));
+  for (ContactPoint *c = s->point; c < s->point + s->n && *softer; ++c)
+    if (c->law.kind != CONTACT_BONDED) soften(s, c);
+  PetscFunctionReturn(0);
 }
 
 /* Motion of what is in contact against its wall. */
