@@ -88,6 +88,17 @@ typedef struct {
   PetscInt lost;  /* iterations of tries that failed */
 } Tries;
 
+/* Sums over steps, of displacements since the start, J (step/sway.c): what points without an extent lose of the work of
+ * stress in them, and what they strain the material by; without what bodies do as a whole (apart); and along each axis,
+ * with the work of the strains' stress, and spin and strain apart, squared, m3. All of it is real, counts too. */
+typedef struct {
+  PetscReal steps, lost, strained, lost_apart, strained_apart;
+  struct {
+    PetscReal lost, work, spin, strain;
+  } along[3];
+} Sway;
+#define SWAY_NUMBERS (sizeof(Sway) / sizeof(PetscReal))
+
 /* How far a static step moves the body per time, m/s: of the stiffest step, of the last one and of
  * the one before it; 0: there was none. */
 typedef struct {
@@ -233,6 +244,7 @@ typedef struct Model {
   /* most of a piece of its table of strength that a point of this rank has passed in a step (Law.passed) */
   PetscReal passed;
   Softening limit;
+  Sway sway;
   Strength strength;
   InitialState initial;
   struct {

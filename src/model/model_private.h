@@ -427,6 +427,8 @@ PetscErrorCode PrepareStep(Model *model, PetscReal dt, StepProblem *problem);
 /* passed.c. Around the commit of a step; *before is theirs. */
 PetscErrorCode PassedBegin(const Model *model, PetscReal **before);
 PetscErrorCode PassedEnd(Model *model, PetscReal **before);
+/* sway.c. Collective. Points are sorted, their displacements and stresses are those of one state: Model.sway. */
+PetscErrorCode NoteSway(Model *model);
 /* Collective. Norms over nodes that material touches: gravity g, the inertia force of stopping within a step of dt, and
  * that of the motion at its start. */
 PetscErrorCode ForceScales(const Model *model, const PetscReal *g, PetscReal dt, StepProblem *problem);

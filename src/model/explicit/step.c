@@ -199,6 +199,7 @@ PetscErrorCode ExplicitStep(Model *m, PetscReal limit, StepReport *report)
     if (report->outcome == STEP_ACCEPTED) PetscCall(LapEnd(m, report));
   }
   if (report->outcome == STEP_ACCEPTED) PetscCall(Close(m, e));
+  if (report->outcome == STEP_ACCEPTED) PetscCall(NoteSway(m));
   PetscCall(Accept(m, e, before, report));
   PetscCall(MaterialsSettle(m, report));
   materials_step(m->c->n_materials, m->materials, m->time, 0, PETSC_TRUE);

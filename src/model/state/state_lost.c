@@ -11,7 +11,7 @@ typedef struct {
   size_t stride;
 } LostTable;
 
-enum { N_LOST = 6 };
+enum { N_LOST = 7 };
 
 static void list_tables(Model *m, LostTable table[N_LOST])
 {
@@ -28,6 +28,7 @@ static void list_tables(Model *m, LostTable table[N_LOST])
                          (char *)m->load_memory, sizeof *m->load_memory};
   table[4] = (LostTable){"energy_open", "work", 1, 1, (char *)&m->open_energy, 0};
   table[5] = (LostTable){"energy_kept", "elastic", 1, 1, (char *)&m->kept_energy, 0};
+  table[6] = (LostTable){"sway", "steps_sums", 1, NUMBERS(Sway, steps), (char *)&m->sway, 0};
 }
 
 static PetscReal *row_of(const LostTable *t, PetscInt row) { return (PetscReal *)(t->data + t->stride * (size_t)row); }

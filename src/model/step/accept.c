@@ -96,6 +96,7 @@ PetscErrorCode CommitStep(Model *m, PetscReal dt, EnergyStep *energy)
   PetscCall(GuessLearn(m, dt));
   PetscCall(LimitWatch(m, dt));
   PetscCall(NoteEntered(m));
+  PetscCall(NoteSway(m)); /* of where it began: what is lost then acts in this step */
   WeakFormInput in = weak_form_of(m, 0);
   note_flow(m, -1);
   PetscCall(PassedBegin(m, &before));

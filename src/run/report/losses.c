@@ -124,6 +124,7 @@ PetscErrorCode LossesWarn(Model *m, const PetscReal *values, Diag *diag)
   PetscCall(WarnOfStretch(m, diag));
   warn_of_entered(m, diag);
   PetscCall(WarnOfPull(m, diag));
+  warn_of_sway(m, diag);
   PetscCall(WarnOfPassed(m, diag));
   PetscCall(WarnOfFailed(m, diag));
   PetscCall(AdviseHangs(m, diag));

@@ -33,6 +33,8 @@ PetscErrorCode WarnOfMovedLoads(const Model *model, Diag *diag);
 PetscErrorCode WarnOfShear(const Model *model, Diag *diag);
 /* Collective. Of gmm: elastic material that is drawn out, among functions too wide to stay even there. */
 PetscErrorCode WarnOfStretch(const Model *model, Diag *diag);
+/* Of mpm: elastic bodies that bend or sway under a stress whose stiffness points without an extent lose. */
+void warn_of_sway(const Model *model, Diag *diag);
 /* That parts of gmm that no material joins have gone into each other. */
 void warn_of_entered(const Model *model, Diag *diag);
 /* Collective. Soil that bears a tension, of laws that must begin under pressure. */
