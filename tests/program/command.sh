@@ -90,6 +90,8 @@ for way in "dynamic 0.0008 cheaper than" "dynamic 0.006 dearer than" "dynamic 0.
   expect "price of $type, $step" 0 "$talus" check cost.yaml --set analysis.type=$type --set "analysis.step=${step%% *}"
   says out.txt "${step#* } an implicit step"
 done
+expect "a run that logs its price" 0 "$talus" run cost.yaml --set analysis.end=0.0008 --set analysis.step=0.0008 --out cost --quiet --force
+says cost/log.txt "cheaper than an implicit step"
 # Grains cost iterations the more the stiffer they are
 for way in "mohr-coulomb about as dear as" "neo-hookean dearer than"; do
   law=${way%% *} more=

@@ -1,7 +1,7 @@
 #include "case/shape_volume.h"
 #include "grid/cloud/cloud.h"
-#include "model/explicit/critical.h"
 #include "run/check/check_private.h"
+#include "run/report/price.h"
 #include "run/stages/initial.h"
 #include "solve/levels/coarse_box.h"
 #include <stdarg.h>
@@ -218,48 +218,6 @@ static PetscErrorCode ReportClouds(const Model *m, FILE *out)
   PetscFunctionReturn(0);
 }
 
-/* Does matter flow whose strength is its pressure? Whatever opens and closes costs iterations, the more the stiffer it
- * is. */
-static PetscBool has_grains(const Model *m)
-{
-  for (PetscInt i = 0; i < m->c->n_materials; ++i)
-    if (m->materials[i].law->yields && !m->materials[i].law->symmetric) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-/* Substeps that cost as much as an implicit step of the same model, whichever of both the case has, in which there are
- * n of them (docs/decisions.md [371]). */
-static PetscReal substeps_of_a_step(const Model *m, PetscReal n)
-{
-  /* in the plane, in space; linear functions and gimp by arithmetic, what takes its functions from nodes */
-  static const PetscReal elastic[2][3] = {{15, 12, 5}, {20, 8, 10}}, grains[2][3] = {{10, 6, 4}, {20, 12, 30}};
-  const int space = m->dim == 3, functions = !explicit_by_arithmetic(m) ? 2 : m->space->basis->domains ? 1 : 0;
-  return has_grains(m) ? grains[space][functions] * (1 + n / 8) : elastic[space][functions];
-}
-
-/* Known to a factor of two: how many iterations a step takes only its run knows. */
-static const char *price_of(PetscReal share)
-{
-  return share > 2 ? "dearer than" : share < 0.5 ? "cheaper than" : "about as dear as";
-}
-
-/* What explicit dynamics takes, or would, and whether that is cheaper. */
-static PetscErrorCode ReportSubsteps(const Model *m, FILE *out)
-{
-  const PetscBool explicit = m->c->analysis.type == ANALYSIS_EXPLICIT;
-  PetscReal critical, crossing, fastest;
-
-  PetscFunctionBeginUser;
-  if (!m->scheme->inertia || !m->method->restores_grid || m->formulation->pressure) PetscFunctionReturn(0);
-  PetscCall(ExplicitCritical(m, &critical, &crossing, &fastest));
-  const PetscReal substep = case_courant(&m->c->analysis) * critical, n = PetscCeilReal(m->control.next / substep);
-  const PetscReal share = n / substeps_of_a_step(m, n);
-  say(m, out, "#   explicit: %.3g s a substep, %.0f %s in a step of %g s: %s an implicit step (about %.2g of it)\n",
-      (double)substep, (double)n, explicit ? "of them" : "with `type: explicit`", (double)m->control.next,
-      price_of(share), (double)share);
-  PetscFunctionReturn(0);
-}
-
 /* A run that is cut into stages finds the nodes that statics before or after it would: its answer is not that of the
  * whole, unless the case says so. */
 static void report_followers(const Model *m, FILE *out)
@@ -316,7 +274,8 @@ static PetscErrorCode ReportSizes(Model *m, Diag *diag, FILE *out)
   PetscCall(EstimateMemory(m, points, unknowns, &needed));
   report_memory(m, needed, diag, out);
   if (m->scheme->inertia) report_waves(m, out);
-  PetscCall(ReportSubsteps(m, out));
+  PetscCall(PriceTell(m, sizeof told, told));
+  if (told[0]) say(m, out, "#   explicit: %s\n", told);
   PetscFunctionReturn(0);
 }
 

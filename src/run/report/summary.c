@@ -3,6 +3,7 @@
 #include "output/directory/run_dir_files.h"
 #include <stdlib.h>
 #include "run/report/losses.h"
+#include "run/report/price.h"
 #include "run/watch/events.h"
 #include "talus_version.h"
 
@@ -45,6 +46,8 @@ PetscErrorCode SummaryBegin(Model *m, RunDir *dir)
   for (const char *const *law = plugin_words(); *law; ++law) PetscCall(RunDirLog(dir, "law = %s", *law));
   PetscCall(RunDirLog(dir, "cells = %d nodes = %d points = %d ranks = %d", (int)m->grid->n_cells_global,
                       (int)m->grid->n_nodes_global, (int)points, (int)size));
+  PetscCall(PriceTell(m, sizeof told, told));
+  if (told[0]) PetscCall(RunDirLog(dir, "explicit = %s", told));
   PetscFunctionReturn(0);
 }
 
