@@ -64,8 +64,9 @@ PetscErrorCode DiscretisationVolumes(Discretisation *space, const PetscReal *rat
 PetscErrorCode DiscretisationDensities(Discretisation *space, const PetscReal *ratio, PetscReal *density);
 /* Of a method that restores its grid: no point remembers more of an opening, and has a larger J, than its surroundings
  * have room for, and what flows closer together than its volume allows is pressed (docs/theory.md, "The room that points
- * have"); between initialise and the solve. made: by that, on this rank, J. */
-PetscErrorCode DiscretisationRoom(Discretisation *space, PetscReal *made);
+ * have"); between initialise and the solve. shared: do points of a cell share their change of volume? made: by that, on this
+ * rank, J. */
+PetscErrorCode DiscretisationRoom(Discretisation *space, PetscBool shared, PetscReal *made);
 /* A step that is given up leaves its points as they were before they heard of their room, if they did. */
 void discretisation_room_back(Discretisation *space);
 /* Nodes that keep their history take the velocity of their body where they stand; m and touched

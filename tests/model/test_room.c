@@ -51,7 +51,7 @@ static void bounded(const Kinematics *kinematics, const char *basis, PetscReal s
   set(m, share, opening, j);
   CALL(ModelInitialise(m));
   PetscReal made;
-  CALL(DiscretisationRoom(m->space, &made));
+  CALL(DiscretisationRoom(m->space, PETSC_FALSE, &made));
   CHECK(made == 0, "nothing is pressed");
   for (PetscInt p = 0; p < m->points->n; ++p) {
     PetscReal F[9];
@@ -99,7 +99,7 @@ static void parted(const char *law, const Kinematics *kinematics, PetscReal shar
   }
   CALL(ModelInitialise(m));
   PetscReal made, local = 0;
-  CALL(DiscretisationRoom(m->space, &made));
+  CALL(DiscretisationRoom(m->space, PETSC_FALSE, &made));
   const PetscReal before = j > 1 ? 1 : j; /* there is no room for more */
   for (PetscInt p = 0; p < m->points->n; ++p) {
     const PetscReal *b_e = point_real(m->points, POINT_STATE, p);
@@ -120,6 +120,44 @@ static void parted(const char *law, const Kinematics *kinematics, PetscReal shar
     CHECK_CLOSE(m->points->real[POINT_WORK][p], 0, 0);
   }
   CALL(ModelDestroy(&m));
+}
+
+/* Of points that are pressed by so much beside their shear stress of 100 Pa less is parted; those of a cell that share
+ * their change of volume have the mean of what they would have. */
+static PetscReal parted_under(PetscReal pressure, PetscBool shared)
+{
+  PetscReal made, J[2] = {1, 0};
+  Bench b;
+  ground(&b, &kinematics_plane_strain, "cell");
+  Model *m = bench_model(&b, PETSC_COMM_WORLD);
+  set(m, 1.24, 0, 1);
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    PetscReal *tau = point_real(m->points, POINT_TAU, p);
+    for (int k = 0; k < 3; ++k) tau[k] = -pressure;
+    tau[3] = 100 / sqrt(3);
+    *point_real(m->points, POINT_FLOW, p) = !shared ? 0.05 : p % 2 ? 0.1 : 0;
+  }
+  CALL(ModelInitialise(m));
+  CALL(DiscretisationRoom(m->space, shared, &made));
+  for (PetscInt p = 0; p < m->points->n; ++p) {
+    J[0] = PetscMin(J[0], m->points->real[POINT_J][p]);
+    J[1] = PetscMax(J[1], m->points->real[POINT_J][p]);
+  }
+  if (m->points->n) CHECK_CLOSE(J[0], J[1], 1e-13);
+  CALL(ModelDestroy(&m));
+  CALL(MPI_Allreduce(MPI_IN_PLACE, J, 1, MPIU_REAL, MPI_MIN, PETSC_COMM_WORLD));
+  return -log(J[0]);
+}
+
+static void test_parts_what_rubs(void **state)
+{
+  const PetscReal all = 4 * 0.05 * 0.2;
+  (void)state;
+  CHECK_CLOSE(parted_under(0, PETSC_FALSE), all, 1e-12);
+  CHECK_CLOSE(parted_under(499, PETSC_FALSE), all, 1e-12);
+  CHECK_CLOSE(parted_under(1000, PETSC_FALSE), 0.25 * all, 1e-12); /* nearly fluid */
+  CHECK_CLOSE(parted_under(-1000, PETSC_FALSE), all, 1e-12);
+  CHECK_CLOSE(parted_under(0, PETSC_TRUE), all, 1e-12);
 }
 
 static void test_parts(void **state)
@@ -180,12 +218,16 @@ static void test_refused(void **state)
   b.material.law = (char *)"neo-hookean";
   b.material.n_parameters = 2;
   bench_refused(&b, PETSC_COMM_WORLD, "stabilisation.room", "no material of the case yields");
+  ground(&b, &kinematics_plane_strain, "cell");
+  b.c.formulation = (char *)"mixed";
+  bench_refused(&b, PETSC_COMM_WORLD, "stabilisation.room", "the mixed formulation has the volume");
 }
 
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_bounds), cmocka_unit_test(test_parts),
-                                     cmocka_unit_test(test_bears), cmocka_unit_test(test_refused)};
+                                     cmocka_unit_test(test_parts_what_rubs), cmocka_unit_test(test_bears),
+                                     cmocka_unit_test(test_refused)};
   if (PetscInitialize(&argc, &argv, NULL, NULL)) return 1;
   const int failures = cmocka_run_group_tests(tests, NULL, NULL);
   return PetscFinalize() ? 1 : failures;

@@ -86,6 +86,9 @@ void room_check(const Model *m, Diag *diag)
     diag_error(diag, "stabilisation.room", "nodes of method %s go with the material: the room of points is theirs",
                m->method->name);
     diag_hint(diag, "leave it out; mpm needs it where grains flow on for long");
+  } else if (m->formulation->pressure) {
+    diag_error(diag, "stabilisation.room", "the mixed formulation has the volume of what flows from its pressures");
+    diag_hint(diag, "leave it out, or `formulation: displacement`");
   } else if (!specs_yield(m->c->n_materials, m->c->materials)) {
     diag_error(diag, "stabilisation.room", "no material of the case yields: what cannot flow keeps its room");
     diag_hint(diag, "leave it out");

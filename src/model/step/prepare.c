@@ -58,7 +58,7 @@ PetscErrorCode ModelRoom(Model *m, PetscReal *made)
   PetscFunctionBeginUser;
   *made = 0;
   if (!m->c->stabilisation.room) PetscFunctionReturn(0);
-  PetscCall(DiscretisationRoom(m->space, &local));
+  PetscCall(DiscretisationRoom(m->space, m->formulation->cells, &local));
   PetscCall(MPIU_Allreduce(&local, made, 1, MPIU_REAL, MPI_SUM, m->comm));
   m->numerical_energy -= *made;
   PetscFunctionReturn(0);

@@ -249,7 +249,8 @@ static const SchemaEntry stabilisation_entries[] = {
       .note = "0.01 if a law of the case yields, 0 if all are elastic", BETWEEN(0, 1), AT(StabilisationSpec, inertia)),
   KEY(
     "room", BOOLEAN, NULL,
-    "mpm: what flows keeps to the room that the grid has around its points. Denser than its volume allows it is "
+    "mpm, not mixed: what flows keeps to the room that the grid has around its points. Denser than its volume allows "
+    "it is "
     "pressed "
     "apart; grains with `opening_memory` are no farther apart, and J no larger, than there is room for. So flows that "
     "go far or on for long neither shrink nor, with that memory, swell",

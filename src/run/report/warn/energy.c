@@ -6,6 +6,7 @@
 #define KEPT_ALLOWED 0.01
 /* times all that came in */
 #define MOTION_ALLOWED 10
+#define PARTING_ALLOWED 2
 
 PetscBool energy_counts(const Model *m, PetscReal energy)
 {
@@ -245,9 +246,23 @@ static PetscErrorCode WarnOfGain(Model *m, Diag *diag)
   PetscFunctionReturn(0);
 }
 
+/* What parts points makes about as much as gravity gives where grains flow far. */
+static void warn_of_room(const Model *m, Diag *diag)
+{
+  const PetscReal share = energy_share(m, -m->numerical_energy);
+  if (!m->c->stabilisation.room || !(share > PARTING_ALLOWED)) return;
+  diag_warning(diag, "stabilisation.room",
+               "parting what flows made %.4g J, %.2g %% of the energy that came in: it may drive the flow",
+               (double)-m->numerical_energy, (double)(100 * share));
+  diag_hint(diag,
+            "leave it out where what flows is nearly fluid, or beside an axis; more points a cell, displacements with "
+            "`basis: gimp` and explicit dynamics need less of it (docs/guide/limits.md)");
+}
+
 PetscErrorCode WarnOfEnergy(Model *m, Diag *diag)
 {
   PetscFunctionBeginUser;
+  warn_of_room(m, diag);
   warn_of_transfer(m, diag);
   warn_of_kept(m, diag);
   PetscCall(WarnOfRunaway(m, diag));
