@@ -113,6 +113,9 @@ static PetscReal press(Discretisation *s, PetscInt p, PetscReal much)
   return work;
 }
 
+/* Do its points flow, and know how to be pressed? */
+static PetscBool parts(const Law *law) { return (PetscBool)(law->yields && law->scale); }
+
 /* How far is flow from that of a fluid? 1: as that of sand. */
 static PetscReal rubs(const Points *points, PetscInt p)
 {
@@ -128,7 +131,7 @@ static PetscReal much_of(const Discretisation *s, PetscInt p, PetscReal excess)
 {
   const Law *law = s->materials[s->points->material[p]].law;
   const PetscReal flow = *point_real(s->points, POINT_FLOW, p);
-  if (!law->yields || !law->scale || !(flow > 0) || !(excess > 0)) return 0;
+  if (!parts(law) || !(flow > 0) || !(excess > 0)) return 0;
   return PetscMin(AT_ONCE, PARTING * flow) * excess * rubs(s->points, p);
 }
 
@@ -161,7 +164,7 @@ static PetscErrorCode Part(Discretisation *s, PetscBool shared, PetscReal *densi
   for (PetscInt p = 0; p < points->n; ++p) density[p] = much_of(s, p, density[p] - 1 - uneven);
   if (shared) share_out(points, density);
   for (PetscInt p = 0; p < points->n; ++p)
-    if (density[p] > 0 && s->materials[points->material[p]].law->scale) *made += press(s, p, density[p]);
+    if (density[p] > 0 && parts(s->materials[points->material[p]].law)) *made += press(s, p, density[p]);
   PetscFunctionReturn(0);
 }
 
@@ -171,7 +174,7 @@ static const int told[] = {POINT_F, POINT_J, POINT_STATE, POINT_WORK};
 static void copy(Points *points, PetscReal *kept, PetscBool back)
 {
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(told); ++k) {
-    const size_t n = (size_t)(points->components[told[k]] * points->n);
+    const size_t n = (size_t)points->components[told[k]] * (size_t)points->n;
     PetscReal *field = points->real[told[k]];
     memcpy(back ? field : kept, back ? kept : field, n * sizeof *kept);
     kept += n;
