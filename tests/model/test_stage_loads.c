@@ -231,6 +231,17 @@ static PetscReal out_of_balance(Model *m, PetscReal height, PetscBool there)
   return most;
 }
 
+/* The second of two stages, when the first is over: a second each, four steps long. */
+static Model *one_then(Bench *one, Bench *then)
+{
+  then->c.stage = 1;
+  then->c.start = 1;
+  then->c.analysis.end = 2;
+  Model *m = bench_model(one, PETSC_COMM_WORLD);
+  for (int k = 0; k < 4; ++k) model_step(m, 0.25);
+  return succeed(m, then);
+}
+
 /* A boundary lets go what it has pulled: its nodes are held with what they bear as points stand now, and feel nothing
  * at once of what these left as they moved. That is of the other nodes alone. */
 static void test_lets_go(void **state)
@@ -242,12 +253,7 @@ static void test_lets_go(void **state)
     soft_block(&then, (int)kind);
     one.c.n_loads = then.c.n_loads = 0;
     bench_motion(&one, 1, 1, MOTION_VELOCITY, 3)->value[1] = 0.1;
-    then.c.stage = 1;
-    then.c.start = 1;
-    then.c.analysis.end = 2;
-    Model *m = bench_model(&one, PETSC_COMM_WORLD);
-    for (int k = 0; k < 4; ++k) model_step(m, 0.25);
-    m = succeed(m, &then);
+    Model *m = one_then(&one, &then);
     const PetscReal at = out_of_balance(m, 1, PETSC_TRUE), beside = out_of_balance(m, 1, PETSC_FALSE);
     CHECK(beside > 100 && at < 1e-9 * beside, "%g N on what was held, %g N beside it", (double)at, (double)beside);
     CALL(ModelDestroy(&m));
@@ -272,12 +278,7 @@ static void test_goes(void **state)
       both[k]->body[0].shape.max[1] = both[k]->body[1].shape.min[1] = 0.5;
     }
     then.body[1].absent = PETSC_TRUE;
-    then.c.stage = 1;
-    then.c.start = 1;
-    then.c.analysis.end = 2;
-    Model *m = bench_model(&one, PETSC_COMM_WORLD);
-    for (int k = 0; k < 4; ++k) model_step(m, 0.25);
-    m = succeed(m, &then);
+    Model *m = one_then(&one, &then);
     for (int k = 1; k <= 4; ++k) {
       model_step(m, 0.25);
       CHECK_CLOSE(foot(m, 1), 200 * 1000 * (0.5 + 0.5 * (1 - 0.25 * k)), 1e-5);

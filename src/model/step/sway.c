@@ -151,33 +151,40 @@ static PetscReal loaded_along(const Model *m, PetscInt p, const PetscReal *g, co
   return j < m->dim ? m->points->real[POINT_MASS][p] * point_real(m->points, POINT_U, p)[j] * sum : 0;
 }
 
-/* Green's strain, which knows of no turn, and the stress of that alone: where volumes hardly change, as if they were
- * softer. */
-static void strain_of(const Material *material, const PetscReal A[9], PetscReal E[9], PetscReal bears[9])
+/* What a point has strained and bears. */
+typedef struct {
+  PetscReal volume, tau[6];
+  PetscReal E[9],
+    bears[9];    /* Green's strain, which knows of no turn, and the stress of that alone: where volumes hardly
+                               change, as if they were softer */
+  PetscBool all; /* see loses_all */
+} Borne;
+
+static Borne borne_by(const Model *m, PetscInt p, const PetscReal A[9])
 {
+  const Material *material = &m->materials[m->points->material[p]];
   const PetscReal shear = material->elastic.shear, across = material_sheared(material) - 2 * shear;
+  Borne b = {.volume = m->points->real[POINT_VOLUME][p], .all = loses_all(m, p)};
+  point_tau(m->points, p, b.tau);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      E[3 * i + j] = 0.5 * (A[3 * i + j] + A[3 * j + i] + A[i] * A[j] + A[3 + i] * A[3 + j] + A[6 + i] * A[6 + j]);
-  const PetscReal pressure = across * (E[0] + E[4] + E[8]);
-  for (int i = 0; i < 9; ++i) bears[i] = 2 * shear * E[i] + (i % 4 == 0 ? pressure : 0);
+      b.E[3 * i + j] = 0.5 * (A[3 * i + j] + A[3 * j + i] + A[i] * A[j] + A[3 + i] * A[3 + j] + A[6 + i] * A[6 + j]);
+  const PetscReal pressure = across * (b.E[0] + b.E[4] + b.E[8]);
+  for (int i = 0; i < 9; ++i) b.bears[i] = 2 * shear * b.E[i] + (i % 4 == 0 ? pressure : 0);
+  return b;
 }
 
 /* A: as the body has come. */
 static void add_whole(const Model *m, PetscInt p, const PetscReal *g, const PetscReal A[9], Sway *sum)
 {
-  const PetscReal volume = m->points->real[POINT_VOLUME][p];
-  const PetscBool all = loses_all(m, p);
-  PetscReal E[9], bears[9], tau[6];
-  strain_of(&m->materials[m->points->material[p]], A, E, bears);
-  point_tau(m->points, p, tau);
+  const Borne b = borne_by(m, p, A);
   for (int j = 0; j < 3; ++j) {
-    const PetscReal lost = volume * lost_along(tau, A, j, all) - loaded_along(m, p, g, A, j, all);
+    const PetscReal lost = b.volume * lost_along(b.tau, A, j, b.all) - loaded_along(m, p, g, A, j, b.all);
     sum->lost += lost;
     sum->along[j].lost += lost;
     for (int k = 0; k < 3; ++k) {
-      sum->strained += volume * bears[3 * j + k] * E[3 * j + k];
-      sum->along[j].work += volume * bears[3 * j + k] * A[3 * j + k];
+      sum->strained += b.volume * b.bears[3 * j + k] * b.E[3 * j + k];
+      sum->along[j].work += b.volume * b.bears[3 * j + k] * A[3 * j + k];
     }
   }
 }
@@ -185,17 +192,13 @@ static void add_whole(const Model *m, PetscInt p, const PetscReal *g, const Pets
 /* A: what it has done besides turning and stretching as a whole. */
 static void add_apart(const Model *m, PetscInt p, const PetscReal A[9], Sway *sum)
 {
-  const PetscReal volume = m->points->real[POINT_VOLUME][p];
-  const PetscBool all = loses_all(m, p);
-  PetscReal E[9], bears[9], tau[6];
-  strain_of(&m->materials[m->points->material[p]], A, E, bears);
-  point_tau(m->points, p, tau);
+  const Borne b = borne_by(m, p, A);
   for (int j = 0; j < 3; ++j) {
-    sum->lost_apart += volume * lost_along(tau, A, j, all);
+    sum->lost_apart += b.volume * lost_along(b.tau, A, j, b.all);
     for (int k = 0; k < 3; ++k) {
-      sum->strained_apart += volume * bears[3 * j + k] * E[3 * j + k];
-      sum->along[j].spin += volume * PetscSqr(0.5 * (A[3 * j + k] - A[3 * k + j]));
-      sum->along[j].strain += volume * PetscSqr(E[3 * j + k]);
+      sum->strained_apart += b.volume * b.bears[3 * j + k] * b.E[3 * j + k];
+      sum->along[j].spin += b.volume * PetscSqr(0.5 * (A[3 * j + k] - A[3 * k + j]));
+      sum->along[j].strain += b.volume * PetscSqr(b.E[3 * j + k]);
     }
   }
 }
