@@ -62,10 +62,15 @@ PetscErrorCode DiscretisationVolumes(Discretisation *space, const PetscReal *rat
 /* Of each point, in grids of cells: the volume that points around ask for, `ratio` of that at the start (NULL: 1), over
  * the room that they have; collective. */
 PetscErrorCode DiscretisationDensities(Discretisation *space, const PetscReal *ratio, PetscReal *density);
+/* The same by what they ask for. */
+PetscErrorCode DiscretisationCrowding(Discretisation *space, PetscReal *density);
+/* Of its volume at the start. What has opened asks for no more than that: laws forget what has closed again, and
+ * dilatancy is left alone, as far as it has room. */
+static inline PetscReal point_asks(const Points *points, PetscInt p) { return PetscMin(1, points->real[POINT_J][p]); }
 /* Of a method that restores its grid: no point remembers more of an opening, and has a larger J, than its surroundings
- * have room for, and what flows closer together than its volume allows is pressed (docs/theory.md, "The room that points
- * have"); between initialise and the solve. shared: do points of a cell share their change of volume? made: by that, on this
- * rank, J. */
+ * have room for, and what flows closer together than its volume allows is pressed (docs/theory.md, "The room that
+ * points have"); between initialise and the solve. shared: do points of a cell share their change of volume? made: by
+ * that, on this rank, J. */
 PetscErrorCode DiscretisationRoom(Discretisation *space, PetscBool shared, PetscReal *made);
 /* A step that is given up leaves its points as they were before they heard of their room, if they did. */
 void discretisation_room_back(Discretisation *space);

@@ -67,6 +67,18 @@ PetscErrorCode DiscretisationDensities(Discretisation *s, const PetscReal *ratio
   PetscFunctionReturn(0);
 }
 
+PetscErrorCode DiscretisationCrowding(Discretisation *s, PetscReal *density)
+{
+  PetscReal *ratio;
+
+  PetscFunctionBeginUser;
+  PetscCall(PetscMalloc1(s->points->n, &ratio));
+  for (PetscInt p = 0; p < s->points->n; ++p) ratio[p] = point_asks(s->points, p);
+  PetscCall(DiscretisationDensities(s, ratio, density));
+  PetscCall(PetscFree(ratio));
+  PetscFunctionReturn(0);
+}
+
 /* F loses volume where it is free to: not around an axis, which tells the radius, nor across a plane. */
 static void shrink(Points *points, PetscInt p, PetscReal J)
 {
@@ -148,19 +160,13 @@ static void share_out(const Points *points, PetscReal *much)
   }
 }
 
-/* What has opened asks for no more than before: laws forget what has closed again, and dilatancy is left alone, as far
- * as it has room. */
 static PetscErrorCode Part(Discretisation *s, PetscBool shared, PetscReal *density, PetscReal *made)
 {
   Points *points = s->points;
   const PetscReal uneven = s->c->kinematics->hoop && s->basis->domains ? UNEVEN_RINGS : UNEVEN;
-  PetscReal *ratio;
 
   PetscFunctionBeginUser;
-  PetscCall(PetscMalloc1(points->n, &ratio));
-  for (PetscInt p = 0; p < points->n; ++p) ratio[p] = PetscMin(1, points->real[POINT_J][p]);
-  PetscCall(DiscretisationDensities(s, ratio, density));
-  PetscCall(PetscFree(ratio));
+  PetscCall(DiscretisationCrowding(s, density));
   for (PetscInt p = 0; p < points->n; ++p) density[p] = much_of(s, p, density[p] - 1 - uneven);
   if (shared) share_out(points, density);
   for (PetscInt p = 0; p < points->n; ++p)

@@ -18,7 +18,7 @@ void warn_of_followers(const Model *model, Diag *diag);
 PetscErrorCode WarnOfEmpty(const Model *model, const PetscReal *values, Diag *diag);
 
 /* Collective. Cells that hold more material than their room. */
-PetscErrorCode WarnOfCrowd(const Model *model, Diag *diag);
+PetscErrorCode WarnOfCrowd(Model *model, Diag *diag);
 /* Collective. Grains under pressure that their law counts as farther apart than they are. */
 PetscErrorCode WarnOfApart(Model *model, Diag *diag);
 
